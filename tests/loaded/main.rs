@@ -25,7 +25,7 @@ fn interpreted(blueprint: &Arc<Blueprint>, values: &[f64], inputs: &[Input]) -> 
 /// Every model of a mechanism beside that of its text.
 fn all_models<Me: Scenes>(call: &str) {
     let graphs = load(&texts::of(call, Me::describe().name)).unwrap_or_else(|faults| panic!("{}", faults[0]));
-    let graph = graphs.iter().find(|graph| graph.models[0].blueprint.description().name == Me::describe().name);
+    let graph = graphs.iter().find(|graph| graph.name == Me::describe().name);
     let graph = graph.expect("the text has the graph");
     assert_eq!((graph.models.len(), graph.is_literal), (Me::MODELS, Me::LITERAL));
     (0..Me::MODELS).for_each(|index| Me::model(index, Beside { graph, index }));
@@ -42,7 +42,7 @@ impl MechanismVisitor for Beside<'_> {
     fn visit<Me: Mechanism + 'static>(self) {
         let parameters = Me::Parameters::default();
         let inputs: Vec<Input> = (1..=Me::describe().inputs.len()).map(|k| Input::constant(0.7 * k as f64)).collect();
-        let blueprint = &self.graph.models[self.index].blueprint;
+        let blueprint = self.graph.models[self.index].blueprint.as_ref().expect("all scenes were asked for");
         assert_eq!(*blueprint.description(), *Me::describe());
         let loaded = interpreted(blueprint, &parameters.values(), &inputs);
         let compiled = Me::make(parameters, &inputs).expect("defaults are possible").machine();

@@ -76,8 +76,17 @@ pub struct Compiled {
 /// # Errors
 /// The faults of all parts and graphs.
 pub fn models(source: &Source) -> Staged<Vec<Compiled>> {
+    models_where(source, &|_| true)
+}
+
+/// The same of each graph's first model and of the scenes of these names alone; those that are not wanted are not looked
+/// at. [`Compiled::scenes`] names them.
+///
+/// # Errors
+/// As [`models`].
+pub fn models_where(source: &Source, is_wanted: &dyn Fn(&str) -> bool) -> Staged<Vec<Compiled>> {
     let flattened = part::flatten(source)?;
-    of_graphs(&flattened).map_err(|faults| flattened.told(faults))
+    of_graphs(&flattened, is_wanted).map_err(|faults| flattened.told(faults))
 }
 
 impl Compiled {
@@ -103,13 +112,21 @@ impl Compiled {
     }
 }
 
-fn of_graphs(flattened: &Flattened) -> Staged<Vec<Compiled>> {
+fn of_graphs(flattened: &Flattened, is_wanted: &dyn Fn(&str) -> bool) -> Staged<Vec<Compiled>> {
     let mut models = Vec::new();
     let mut faults = names::check(&flattened.source).err().unwrap_or_default();
     flattened.unused.iter().for_each(|part| faults.extend(of_part(part)));
     for graph in &flattened.source.graphs {
         match scene::variants(graph) {
-            Ok(variants) => each_variant(&variants, scene::scenes_only(graph), &mut models, &mut faults),
+            Ok(mut variants) => {
+                let is_only = scene::scenes_only(graph);
+                // The literal graph, and with `scenes only;` the first scene, are always looked at.
+                let mut place = 0..;
+                variants.retain(|variant| {
+                    place.next() <= Some(usize::from(is_only)) || is_wanted(&variant.graph.name.text)
+                });
+                each_variant(&variants, is_only, &mut models, &mut faults);
+            }
             Err(found) => faults.extend(found),
         }
     }

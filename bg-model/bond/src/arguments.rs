@@ -102,6 +102,18 @@ pub fn asked(words: impl Iterator<Item = OsString>) -> Result<Asked, String> {
     Ok(Asked::Program(Call { file, graph, command, options: words }))
 }
 
+/// The commands that ask for one scene.
+const OF_ONE_SCENE: [&str; 6] = ["run", "report", "linearize", "sensitivity", "identify", "fmu"];
+
+/// The only scene beside the one that stands for the graph that a command asks for; none where it may ask for all.
+pub fn only_scene(command: &[String], options: &[OsString]) -> Option<String> {
+    if command.len() != 1 || !OF_ONE_SCENE.contains(&command[0].as_str()) || options.iter().any(|word| word == "--help")
+    {
+        return None;
+    }
+    Some(taken(&mut options.to_vec(), "--scene").ok().flatten().unwrap_or_default())
+}
+
 /// The value of an option, which is taken out of the words.
 fn taken(words: &mut Vec<OsString>, option: &str) -> Result<Option<String>, String> {
     let with_value = format!("{option}=");

@@ -19,7 +19,7 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
                 continue;
             }
         };
-        let told = match file::graphs(&text) {
+        let told = match file::graphs(&text, None) {
             Ok(graphs) if json => drop(graphs),
             Ok(graphs) => {
                 let names: Vec<String> = graphs

@@ -71,7 +71,7 @@ mod tests {
     fn a_fault_is_shown_at_its_place() {
         let text =
             Text { name: "swing.bond".to_owned(), text: "graph Swing {\n    param mass: kgg = 2;\n}\n".to_owned() };
-        let faults = crate::file::graphs(&text).expect_err("there is no unit kgg");
+        let faults = crate::file::graphs(&text, None).expect_err("there is no unit kgg");
         let told = shown(&text, &faults[0], &Renderer::plain());
         assert!(told.starts_with("error[BG0"), "{told}");
         assert!(told.contains("--> swing.bond:2:17") && told.contains("^^^") && told.contains("help: "), "{told}");

@@ -8,8 +8,9 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use bg_import::{Format, Options, import_file};
-use bg_loaded::{Fault, Graph, load};
+use bg_loaded::{Fault, Graph, load_where};
 use bg_workbench::files::console;
+use bg_workbench::scenes::in_small_letters;
 use thiserror::Error;
 
 /// The largest file that is read, bytes: a mechanism of a thousand bodies has a tenth of it.
@@ -85,12 +86,13 @@ fn imported(format: Format, path: &Path) -> Result<String, FileFault> {
     Ok(imported.text)
 }
 
-/// The graphs of a text.
+/// The graphs of a text; of their scenes only the one called `scene` on the command line, where it is said.
 ///
 /// # Errors
 /// All faults of the first stage that has any.
-pub fn graphs(text: &Text) -> Result<Vec<Graph>, Vec<Fault>> {
-    let text = text.text.clone();
-    let compiler = std::thread::Builder::new().stack_size(STACK).spawn(move || load(&text));
+pub fn graphs(text: &Text, scene: Option<&str>) -> Result<Vec<Graph>, Vec<Fault>> {
+    let (text, scene) = (text.text.clone(), scene.map(str::to_owned));
+    let is_wanted = move |name: &str| scene.as_ref().is_none_or(|scene| in_small_letters(name) == *scene);
+    let compiler = std::thread::Builder::new().stack_size(STACK).spawn(move || load_where(&text, &is_wanted));
     compiler.expect("a thread can be started").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }

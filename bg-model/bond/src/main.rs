@@ -39,7 +39,7 @@ fn program(Call { file, graph, command, options }: Call) -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    let graphs = match file::graphs(&read) {
+    let graphs = match file::graphs(&read, arguments::only_scene(&command, &options).as_deref()) {
         Ok(graphs) => graphs,
         Err(faults) => {
             faults::tell(&read, &faults);

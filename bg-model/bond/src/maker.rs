@@ -6,7 +6,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium, linearise_at};
-use bg_loaded::{Blueprint, Graph, Interpreted};
+use bg_loaded::{Blueprint, Graph, Interpreted, Model};
 use bg_model::description::Description;
 use bg_model::dynamics;
 use bg_model::input::Input;
@@ -43,13 +43,19 @@ impl Loaded {
     }
 
     fn blueprint(&self, model: usize) -> &Arc<Blueprint> {
-        &self.graph.models[model].blueprint
+        let blueprint = &self.graph.models[model].blueprint;
+        blueprint.as_ref().expect("the scenes that a command asks for have been looked at")
     }
 }
 
 impl Maker for Loaded {
     fn models(&self) -> Vec<&'static Description> {
-        self.graph.models.iter().map(|model| model.blueprint.description()).collect()
+        let description = |model: &Model| match &model.blueprint {
+            Some(blueprint) => blueprint.description(),
+            // It is known by its name only, and not asked for.
+            None => Box::leak(Box::new(Description { name: model.name.clone().leak(), ..Description::default() })),
+        };
+        self.graph.models.iter().map(description).collect()
     }
 
     fn is_literal(&self) -> bool {

@@ -26,8 +26,10 @@ pub struct Graph {
 /// A model of a graph.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// What it is made of.
-    pub blueprint: Arc<Blueprint>,
+    /// Its name.
+    pub name: String,
+    /// What it is made of; none of a scene that was not asked for.
+    pub blueprint: Option<Arc<Blueprint>>,
 }
 
 /// What is wrong with a text, and where.
@@ -63,6 +65,15 @@ impl fmt::Display for Fault {
 /// # Errors
 /// All faults of the first stage that has any.
 pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
+    load_where(text, &|_| true)
+}
+
+/// The same; of the scenes behind each graph's first model only those that are wanted, by their names, have blueprints,
+/// and are looked at.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_where(text: &str, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Graph>, Vec<Fault>> {
     let tokens: TokenStream = text.parse().map_err(|fault: proc_macro2::LexError| {
         let message = "this is no text of the language: a bracket, a quote or a character is out of place".to_owned();
         vec![at(fault.span(), None, message, "close what is open, and quote what is text".to_owned())]
@@ -76,17 +87,20 @@ pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
         let help = "write the part into this file: a text cannot use parts of a Rust crate".to_owned();
         return Err(vec![at(path.name.places()[0], None, message, help)]);
     }
-    let compiled = pipeline::models(&source).map_err(of_stage)?;
+    let compiled = pipeline::models_where(&source, is_wanted).map_err(of_stage)?;
     let mut graphs: Vec<Graph> = Vec::new();
     for model in &compiled {
-        let own = Model { blueprint: Arc::new(Blueprint::of(model)) };
+        let (name, blueprint) = (model.source.name.text.clone(), Some(Arc::new(Blueprint::of(model))));
         match graphs.last_mut().filter(|_| !model.stands_for_graph()) {
-            Some(graph) => graph.models.push(own),
-            None => graphs.push(Graph {
-                name: model.source.name.text.clone(),
-                models: vec![own],
-                is_literal: !model.is_scene,
-            }),
+            Some(graph) => {
+                let own = graph.models.iter_mut().find(|own| own.name == name);
+                own.expect("its graph names it").blueprint = blueprint;
+            }
+            None => {
+                let others = model.scenes.iter().map(|name| Model { name: name.clone(), blueprint: None });
+                let models = [Model { name: name.clone(), blueprint }].into_iter().chain(others).collect();
+                graphs.push(Graph { name, models, is_literal: !model.is_scene });
+            }
         }
     }
     Ok(graphs)

@@ -93,7 +93,8 @@ impl Models {
 }
 
 /// `FreeRun` as `free-run`.
-pub(crate) fn in_small_letters(name: &str) -> String {
+#[must_use]
+pub fn in_small_letters(name: &str) -> String {
     let mut text = String::new();
     let mut after_small = false;
     for c in name.chars() {

@@ -1,0 +1,175 @@
+//! The program as a user calls it: in a folder of its own, by its name, on files.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use tempfile::TempDir;
+
+/// What the program gives in a folder.
+fn bond(folder: &Path, line: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_bond"));
+    command.current_dir(folder).args(line.split_whitespace()).output().expect("the program starts")
+}
+
+/// What it prints, where it succeeds.
+fn told(folder: &Path, line: &str) -> String {
+    let output = bond(folder, line);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{line}: {}\n{errors}", output.status);
+    String::from_utf8(output.stdout).expect("text")
+}
+
+/// What it says of what cannot be used.
+fn refused(folder: &Path, line: &str, code: i32) -> String {
+    let output = bond(folder, line);
+    assert_eq!(output.status.code(), Some(code), "{line}");
+    String::from_utf8(output.stderr).expect("text")
+}
+
+fn folder() -> TempDir {
+    TempDir::new().expect("a folder")
+}
+
+fn write(folder: &TempDir, name: &str, text: &str) {
+    std::fs::write(folder.path().join(name), text).expect("a file");
+}
+
+/// A mass on a spring with a damper: x(t) is known.
+const SWING: &str = "
+/// A mass on a spring.
+pub graph Swing {
+    /// The mass.
+    param mass: kg = 2, above 0;
+    /// Its force.
+    input push: N;
+    1 slide: translation;
+    I body = mass start 0; C spring = 50 start 0.1; Se force = push;
+    force -> slide; slide -> body; slide -> spring;
+    observe { x: m = spring.q; v: m/s = slide.flow }
+}";
+
+#[test]
+fn a_new_file_runs_and_has_a_report() {
+    let folder = folder();
+    assert!(told(folder.path(), "new swing").contains("swing.bond"));
+    let summary = told(folder.path(), "run swing.bond --set angle=0.3 --t-end 0.5");
+    assert!(summary.contains("angle") && folder.path().join("out").is_dir(), "{summary}");
+    told(folder.path(), "report swing.bond --t-end 0.2");
+    assert!(refused(folder.path(), "new swing", 2).contains("cannot write swing.bond"));
+}
+
+#[test]
+fn a_run_is_what_theory_says() {
+    let folder = folder();
+    write(&folder, "swing.bond", SWING);
+    told(folder.path(), "run swing.bond --t-end 1 --step 0.5 --rtol 1e-10 --out out");
+    let files: Vec<_> = std::fs::read_dir(folder.path().join("out")).expect("files").flatten().collect();
+    let csv = files.iter().map(std::fs::DirEntry::path).find(|path| path.extension().is_some_and(|end| end == "csv"));
+    let csv = std::fs::read_to_string(csv.expect("a CSV file")).expect("text");
+    let last = csv.lines().last().expect("rows").split(',').map(|cell| cell.parse::<f64>().expect("a number"));
+    let last: Vec<f64> = last.collect();
+    // x = 0.1 cos(5 t), v = -0.5 sin(5 t).
+    assert!((last[1] - 0.1 * 5.0_f64.cos()).abs() < 1e-9, "{csv}");
+    assert!((last[2] + 0.5 * 5.0_f64.sin()).abs() < 1e-8, "{csv}");
+}
+
+#[test]
+fn names_in_the_file_are_those_of_the_options() {
+    let folder = folder();
+    write(&folder, "swing.bond", SWING);
+    let help = told(folder.path(), "run swing.bond --help");
+    assert!(help.contains("Usage: bond run swing.bond [OPTIONS]") && help.contains("mass"), "{help}");
+    let fault = refused(folder.path(), "run swing.bond --set mas=1", 2);
+    assert!(fault.contains("did you mean `mass`?"), "{fault}");
+    let fault = refused(folder.path(), "run swing.bond --set mass=-1", 2);
+    assert!(fault.contains("parameter `mass` = -1 kg is out of range"), "{fault}");
+    assert!(told(folder.path(), "parameters swing.bond").contains("The mass."));
+}
+
+#[test]
+fn a_linear_model_is_found_without_rustc() {
+    let folder = folder();
+    write(&folder, "swing.bond", SWING);
+    let modes = told(folder.path(), "linearize swing.bond");
+    // 5 rad/s.
+    assert!(modes.contains("0.79577") || modes.contains("0.7958"), "{modes}");
+}
+
+#[test]
+fn faults_are_told_at_their_places() {
+    let folder = folder();
+    write(&folder, "good.bond", SWING);
+    write(&folder, "bad.bond", &SWING.replace("slide -> spring;", "slide -> sprin;"));
+    assert_eq!(told(folder.path(), "check good.bond"), "good.bond: Swing\n");
+    let faults = refused(folder.path(), "check good.bond bad.bond", 1);
+    assert!(faults.contains("bad.bond:10:49") && faults.contains("did you mean `spring`?"), "{faults}");
+    assert!(refused(folder.path(), "run bad.bond", 2).contains("bad.bond:10:49"));
+    let json = bond(folder.path(), "check bad.bond --json");
+    let line: serde_json::Value = serde_json::from_slice(&json.stdout).expect("a line of JSON");
+    assert_eq!((json.status.code(), line["line"].as_u64()), (Some(1), Some(10)));
+}
+
+#[test]
+fn of_several_graphs_one_is_named() {
+    let folder = folder();
+    write(&folder, "two.bond", &format!("{SWING}{}", SWING.replace("Swing", "Other")));
+    let fault = refused(folder.path(), "run two.bond", 2);
+    assert!(fault.contains("Say --graph NAME: there are `Swing`, `Other`"), "{fault}");
+    told(folder.path(), "run two.bond --graph Other --t-end 0.1");
+    assert!(refused(folder.path(), "run two.bond --graph Third", 2).contains("there is no graph `Third`"));
+}
+
+#[test]
+fn what_is_no_text_is_one_clear_error() {
+    let folder = folder();
+    std::fs::write(folder.path().join("bytes.bond"), [0xff, 0xfe, 0, 1]).expect("a file");
+    write(&folder, "open.bond", "graph A { ");
+    write(&folder, "deep.bond", &"(".repeat(100_000));
+    write(&folder, "empty.bond", "");
+    write(&folder, "other.bond", "fn main() {}");
+    for (line, said) in [
+        ("run bytes.bond", "no text in UTF-8"),
+        ("run missing.bond", "cannot read missing.bond"),
+        ("run open.bond", "close what is open"),
+        ("run deep.bond", "brackets in brackets"),
+        ("run empty.bond", "graph"),
+        ("run other.bond", "graph"),
+        ("run .", "cannot read ."),
+    ] {
+        let fault = refused(folder.path(), line, 2);
+        assert!(fault.contains(said) && !fault.contains("panicked"), "{line}: {fault}");
+    }
+}
+
+#[test]
+fn a_robot_and_a_rust_file_are_run() {
+    let folder = folder();
+    write(
+        &folder,
+        "arm.urdf",
+        r#"<robot name="arm"><link name="base"/><link name="upper"><inertial><origin xyz="0.3 0 0"/><mass value="2"/>
+        <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial></link>
+        <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint></robot>"#,
+    );
+    told(folder.path(), "run arm.urdf --t-end 0.2");
+    write(&folder, "swing.rs", &format!("bg_model::bond_graph! {{ {SWING} }} fn main() {{}}"));
+    told(folder.path(), "run swing.rs --t-end 0.2");
+}
+
+#[test]
+fn golden_outputs_are_recorded_and_checked() {
+    let folder = folder();
+    write(&folder, "swing.bond", SWING);
+    told(folder.path(), "golden record swing.bond golden --t-end 0.5");
+    told(folder.path(), "golden check swing.bond golden");
+    write(&folder, "swing.bond", &SWING.replace("= 50 start", "= 51 start"));
+    refused(folder.path(), "golden check swing.bond golden", 1);
+}
+
+#[test]
+fn what_the_interpreter_has_not_got_is_said() {
+    let folder = folder();
+    write(&folder, "swing.bond", SWING);
+    let fault = refused(folder.path(), "sensitivity swing.bond --t-end 0.1", 2);
+    assert!(fault.contains("was made without"), "{fault}");
+}
