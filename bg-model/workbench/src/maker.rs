@@ -1,8 +1,8 @@
 //! The models of one graph, whatever made them: a mechanism that `bond_graph!` compiled, or one that is known at run
 //! time only.
 //!
-//! In: the number of a model, values of its own parameters, inputs. Out: the model as a trait object. All that a program
-//! does is compiled against this, once, and not for each mechanism.
+//! In: the number of a model, values of its own parameters, inputs. Out: the model as a trait object. All that a
+//! program does is compiled against this, once, and not for each mechanism.
 
 use bg_model::description::Description;
 use bg_model::input::Input;

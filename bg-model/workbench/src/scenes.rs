@@ -1,7 +1,7 @@
 //! The models of a graph by name: its scenes and the graph as it stands.
 //!
-//! In: what makes models. Out: each with its name on the command line; the parameters of one of them, from values of the
-//! whole table, and it made of these.
+//! In: what makes models. Out: each with its name on the command line; the parameters of one of them, from values of
+//! the whole table, and it made of these.
 
 use bg_model::description::Description;
 use bg_model::input::Input;

@@ -33,7 +33,7 @@ pub enum CaseSolution {
     /// It is stored.
     Stored(fn() -> Recording),
     /// It is computed, in double-double arithmetic at a hundred instants, of what has
-    /// [`Machine::solution`](crate::machine::Machine::solution).
+    /// [`Machine::solution`].
     Computed,
 }
 
