@@ -41,9 +41,11 @@ pub graph Swing {
     /// The mass.
     param mass: kg = 2, above 0;
     /// Its force.
+    /// Its spring.
+    param stiffness: N/m = 50;
     input push: N;
     1 slide: translation;
-    I body = mass start 0; C spring = 50 start 0.1; Se force = push;
+    I body = mass start 0; C spring = stiffness start 0.1; Se force = push;
     force -> slide; slide -> body; slide -> spring;
     observe { x: m = spring.q; v: m/s = slide.flow }
 }";
@@ -102,11 +104,11 @@ fn faults_are_told_at_their_places() {
     write(&folder, "bad.bond", &SWING.replace("slide -> spring;", "slide -> sprin;"));
     assert_eq!(told(folder.path(), "check good.bond"), "good.bond: Swing\n");
     let faults = refused(folder.path(), "check good.bond bad.bond", 1);
-    assert!(faults.contains("bad.bond:10:49") && faults.contains("did you mean `spring`?"), "{faults}");
-    assert!(refused(folder.path(), "run bad.bond", 2).contains("bad.bond:10:49"));
+    assert!(faults.contains("bad.bond:12:45") && faults.contains("did you mean `spring`?"), "{faults}");
+    assert!(refused(folder.path(), "run bad.bond", 2).contains("bad.bond:12:45"));
     let json = bond(folder.path(), "check bad.bond --json");
     let line: serde_json::Value = serde_json::from_slice(&json.stdout).expect("a line of JSON");
-    assert_eq!((json.status.code(), line["line"].as_u64()), (Some(1), Some(10)));
+    assert_eq!((json.status.code(), line["line"].as_u64()), (Some(1), Some(12)));
 }
 
 #[test]
@@ -160,10 +162,10 @@ fn a_robot_and_a_rust_file_are_run() {
 fn golden_outputs_are_recorded_and_checked() {
     let folder = folder();
     write(&folder, "swing.bond", SWING);
-    told(folder.path(), "golden record swing.bond golden --t-end 0.5");
-    told(folder.path(), "golden check swing.bond golden");
-    write(&folder, "swing.bond", &SWING.replace("= 50 start", "= 51 start"));
-    refused(folder.path(), "golden check swing.bond golden", 1);
+    told(folder.path(), "golden record swing.bond --t-end 0.5");
+    told(folder.path(), "golden check swing.bond");
+    write(&folder, "swing.bond", &SWING.replace("= 50;", "= 51;"));
+    refused(folder.path(), "golden check swing.bond", 1);
 }
 
 #[test]
