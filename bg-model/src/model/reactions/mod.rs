@@ -32,7 +32,7 @@ pub(crate) use impact::impacts_in;
 pub(crate) use impact::{After, Collision, impacts_of};
 #[cfg(feature = "std")]
 pub(crate) use monitor::LoopsInLanes;
-pub(crate) use monitor::{Broken, LoopMonitor};
+pub(crate) use monitor::{Broken, LoopMonitor, Moved};
 pub use shared::{kept, redundant, share};
 
 /// A start state whose joints fit.
