@@ -376,7 +376,15 @@ where
 
 /// The same over slices.
 pub fn sizes_of(system: &dyn Dynamics, t: f64, x: &[f64]) -> DVector<f64> {
-    const AHEAD: f64 = 1.0;
+    // Of other programs nothing is known of how long they will go on.
+    const SECOND: f64 = 1.0;
+    let [own, beside] = sizes_within(system, t, x, SECOND);
+    own.sup(&beside)
+}
+
+/// How large each state is by its own value, and beside the others; of a start at rest by what happens in so many
+/// seconds.
+pub(crate) fn sizes_within(system: &dyn Dynamics, t: f64, x: &[f64], ahead: f64) -> [DVector<f64>; 2] {
     let (mut method, tolerances) = (Dop853::new(), Tolerances::default());
     let start = Point::at(t, DVector::from_column_slice(x));
     let mut stepper = Stepper::new(system, &mut method, Scale::new(&tolerances, x.len()), start);
@@ -385,8 +393,10 @@ pub fn sizes_of(system: &dyn Dynamics, t: f64, x: &[f64]) -> DVector<f64> {
     let mut monitor = SizeMonitor::new(&tolerances, x.len(), t);
     monitor.start(&mut stepper);
     monitor.begin(&mut stepper);
-    monitor.look_ahead(&mut stepper, AHEAD);
-    monitor.sizes.own.sup(&monitor.sizes.beside)
+    monitor.look_ahead(&mut stepper, ahead);
+    let Sizes { own, beside, .. } = monitor.sizes;
+    let beside = if system.stored().is_some() { beside } else { own.map(|_| own.amax()) };
+    [own, beside]
 }
 
 /// The size of the machine: its largest coordinate, m.
