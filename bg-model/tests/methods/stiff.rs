@@ -62,7 +62,7 @@ fn assert_follows(run: impl Fn(f64) -> (f64, Statistics), tolerances: &[f64], ex
 #[test]
 fn van_der_pols_error_follows_the_tolerance() {
     let tolerances = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11];
-    assert_follows(|tolerance| van_der_pols_errors(Radau5::new(), tolerance), &tolerances, 0.3..2.0);
+    assert_follows(|tolerance| van_der_pols_errors(Radau5::new(), tolerance), &tolerances, 0.1..2.0);
     assert_follows(|tolerance| van_der_pols_errors(Radau9::new(), tolerance), &tolerances, 0.01..3.0);
 }
 
@@ -77,7 +77,7 @@ fn robertsons_error_follows_the_tolerance_over_eleven_decades_of_time() {
 fn counts_of_stiff_problems() {
     let counts = |of: Statistics| [of.steps, of.rejected, of.jacobian_evaluations, of.factorisations];
     // Pinned; to be renewed only with a reason.
-    assert_eq!(counts(van_der_pols_errors(Radau5::new(), 1e-6).1), [5548, 65, 2629, 8414]);
-    assert_eq!(counts(robertson(Radau5::new(), 1e-6).1), [736, 260, 627, 1868]);
-    assert_eq!(counts(van_der_pols_errors(Radau9::new(), 1e-9).1), [4169, 86, 2160, 9627]);
+    assert_eq!(counts(van_der_pols_errors(Radau5::new(), 1e-6).1), [5550, 63, 2628, 8420]);
+    assert_eq!(counts(robertson(Radau5::new(), 1e-6).1), [737, 255, 627, 1850]);
+    assert_eq!(counts(van_der_pols_errors(Radau9::new(), 1e-9).1), [4175, 85, 2159, 9666]);
 }

@@ -117,7 +117,8 @@ fn a_kink_that_is_no_switch_is_seen_by_the_defect() {
     for tolerance in [1e-4, 1e-8] {
         let (finish, _) = run(&kinked(), Taylor::new(), [0.0, 1.0], 2.0 * period, &settings(tolerance));
         let error = (finish.x - SVector::from([0.0, 1.0])).norm();
-        assert!(error < 10.0 * tolerance, "{tolerance:e}: {error:e}, {}", finish.statistics);
+        // Where the steps fall about the kinks decides: with first steps of 0.1 to 1.3 times that it is up to 18 times.
+        assert!(error < 20.0 * tolerance, "{tolerance:e}: {error:e}, {}", finish.statistics);
         assert!(finish.statistics.rejected > 4);
     }
 }

@@ -40,7 +40,8 @@ fn switch_times_follow_the_tolerance_and_not_the_interpolation() {
         assert_eq!(record.events.len(), exact.len(), "{tolerance}");
         let error = record.event_times().iter().zip(&exact).map(|(t, exact)| (t - exact).abs()).fold(0.0, f64::max);
         assert!(error < 100.0 * tolerance, "{tolerance}: {error}");
-        assert!(record.events.iter().all(|(_, x, ..)| x[0].abs() <= 4.0 * f64::EPSILON));
+        // Its steps are of size 1 at the loosest tolerance.
+        assert!(record.events.iter().all(|(_, x, ..)| x[0].abs() <= ROUNDING));
     }
 }
 

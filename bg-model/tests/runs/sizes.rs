@@ -162,6 +162,26 @@ fn a_circuit_in_other_units_takes_the_same_steps_to_the_same_bits() {
     }
 }
 
+/// A first step of a machine a million times faster or slower is as much longer or shorter.
+#[test]
+fn a_circuit_of_another_speed_takes_the_same_steps_to_the_same_bits() {
+    for method in METHODS {
+        let run = |second: f64| {
+            let (inductance, capacitance) = (1e-6 * second, 1e-9 * second);
+            let parameters = MeshParameters { inductance, capacitance, ..MeshParameters::default() };
+            let model = Mesh::new(parameters).expect("in range");
+            let parts = [Part::Outputs, Part::States, Part::Energy];
+            let (step, end) = (2.0_f64.powi(-23) * second, 2.0_f64.powi(-19) * second);
+            let run = Simulation::new(&model).method(method).every(step).until(end);
+            measured(&run.recording(&parts).run().expect("a run"), &[1.0, 1.0, second, second, second])
+        };
+        let expected = run(1.0);
+        for exponent in [-20, 20, 40] {
+            assert_eq!(run(2.0_f64.powi(exponent)), expected, "{method:?}: 2^{exponent}");
+        }
+    }
+}
+
 #[test]
 fn a_mechanism_of_another_size_takes_the_same_steps_to_the_same_bits() {
     for method in METHODS {
@@ -226,12 +246,12 @@ fn a_run_that_goes_on_measures_errors_as_the_whole_run_does() {
         let mut pieces = half.clone();
         pieces.continue_until(&model, 12e-6).expect("a run");
         let more = pieces.statistics.steps.saturating_sub(whole.statistics.steps);
-        // The first steps grow from an estimate.
-        assert!(more <= 12, "{method:?}: {more} more");
+        // The first steps grow from an estimate, and a run's steps fall otherwise after a break.
+        assert!(more <= 16, "{method:?}: {more} more");
         let mut anew = half.last.clone();
         anew.largest = anew.values();
         let anew = until(12e-6).from(&anew).run().expect("a run").statistics.steps;
         let rest = whole.statistics.steps - half.statistics.steps;
-        assert!(anew > rest + 12, "{method:?}: {anew} steps that know of smaller states only, {rest} of the whole run");
+        assert!(anew > rest + 16, "{method:?}: {anew} steps that know of smaller states only, {rest} of the whole run");
     }
 }

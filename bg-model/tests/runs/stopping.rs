@@ -4,7 +4,8 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
 
 use crate::problems::*;
 use bg_model::bond_graph;
-use bg_model::capability::Joints;
+use bg_model::capability::{Joints, Storages};
+use bg_model::description::{StateInfo, StateKind};
 use bg_model::failure::{Cause, Failure};
 use bg_model::holding::{Held, Slip};
 use bg_model::integrator::{Bs5, Dop853, Integrator, Method, Radau5, Rk4, Tolerances};
@@ -358,46 +359,84 @@ fn an_observer_ends_the_run_with_the_step_after_which_it_is_done() {
     }
 }
 
-/// Two joints that hold one motion at the start, so that the second one is left out; from 1 s on this moves by itself, with `others`
-/// of its speed in the first one.
+/// Two masses that forces move alike, and two joints that hold them together at the start, so that the second one is
+/// left out; from 1 s on this moves by itself, with `others` of its speed in the first one.
+#[derive(Clone, Copy)]
 struct Loosened {
     others: f64,
+    /// What rounding makes of the second one's speed, in parts of the speed of the masses.
+    rounding: f64,
+    /// Units of mass (kg), length (m) and time (s): powers of two.
+    units: [f64; 3],
+    /// Whether it knows what it stores.
+    knows: bool,
 }
 
-impl System<f64, 1, 0> for Loosened {
-    fn rate(&self, _: f64, _: &SVector<f64, 1>, _: &[bool; 0], dx: &mut SVector<f64, 1>) {
-        dx[0] = 1.0;
+const LOOSENED: Loosened = Loosened { others: 0.0, rounding: 0.0, units: [1.0; 3], knows: false };
+
+impl System<f64, 2, 0> for Loosened {
+    fn rate(&self, _: f64, _: &SVector<f64, 2>, _: &[bool; 0], dx: &mut SVector<f64, 2>) {
+        let [mass, length, time] = self.units;
+        dx.fill(mass * length / time / time);
     }
-    fn joints(&self) -> Option<&impl Joints<f64, 1, 0>> {
+    fn joints(&self) -> Option<&impl Joints<f64, 2, 0>> {
         Some(self)
     }
+    fn storages(&self) -> Option<&impl Storages<f64, 2, 0>> {
+        Some(self).filter(|system| system.knows)
+    }
 }
 
-impl Joints<f64, 1, 0> for Loosened {
+impl Storages<f64, 2, 0> for Loosened {
+    fn states(&self) -> &'static [StateInfo] {
+        const KIND: StateKind = StateKind::Momentum(0);
+        const fn info(name: &'static str, element: &'static str) -> StateInfo {
+            StateInfo { name, unit: "kg*m/s", kind: KIND, element }
+        }
+        const STATES: [StateInfo; 2] = [info("one.p", "one"), info("other.p", "other")];
+        &STATES
+    }
+    fn energy(&self, _: f64, x: &SVector<f64, 2>, _: &[bool; 0], curvatures: &mut SVector<f64, 2>) -> f64 {
+        curvatures.fill(1.0 / self.units[0]);
+        0.5 * x.norm_squared() / self.units[0]
+    }
+}
+
+impl Joints<f64, 2, 0> for Loosened {
     fn held(&self) -> Held {
         const fn slip(joint: &'static str) -> Slip {
             Slip { joint, direction: "in x", unit: "m/s" }
         }
         const SLIPS: [Slip; 2] = [slip("first"), slip("second")];
-        Held { rigid: &SLIPS, moved: &[0], closing: &[(1, 0)], ..Held::NOTHING }
+        Held { rigid: &SLIPS, moved: &[0, 1], closing: &[(1, 0)], ..Held::NOTHING }
     }
     fn kept(&self) -> &[f64] {
         &[0.0]
     }
-    fn hold(&self, t: f64, _: &SVector<f64, 1>, _: &[bool; 0], entries: &mut [f64]) {
-        let speed = (t - 1.0).max(0.0);
-        // Flows, gaps, mobilities, the matrix, what the reactions move.
-        entries.copy_from_slice(&[self.others * speed, speed, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
+    fn hold(&self, t: f64, x: &SVector<f64, 2>, _: &[bool; 0], entries: &mut [f64]) {
+        let [mass, length, time] = self.units;
+        let speed = (t / time - 1.0).max(0.0) * length / time;
+        let held = (x[0] - x[1]) / mass;
+        let second = held + speed + self.rounding * x[0] / mass;
+        let mobility = 2.0 / mass;
+        let [flows, gaps] = [[held + self.others * speed, second], [0.0; 2]];
+        let (mobilities, lower, moves) = ([mobility; 2], [mobility; 3], [1.0, -1.0, 1.0, -1.0]);
+        let all = flows.into_iter().chain(gaps).chain(mobilities).chain(lower).chain(moves);
+        entries.iter_mut().zip(all).for_each(|(entry, value)| *entry = value);
     }
+}
+
+/// Its run over twice its time.
+fn run_of(system: &Loosened, tolerances: Tolerances) -> Result<Finish, Failure> {
+    let time = system.units[2];
+    let settings = Settings { largest_step: 0.125 * time, tolerances, ..Settings::default() };
+    let span = Span { t0: 0.0, t_end: 2.0 * time };
+    integrate(system, &mut Dop853::new(), &SVector::from([0.0; 2]), span, &settings, &mut ())
 }
 
 #[test]
 fn a_joint_that_was_left_out_is_torn_where_others_do_not_hold_its_motion_any_more() {
-    let start = SVector::from([0.0]);
-    let run = |others: f64| {
-        let settings = Settings { largest_step: 0.125, ..Settings::default() };
-        integrate(&Loosened { others }, &mut Dop853::new(), &start, Span { t0: 0.0, t_end: 2.0 }, &settings, &mut ())
-    };
+    let run = |others: f64| run_of(&Loosened { others, ..LOOSENED }, Tolerances::default());
     let failure = run(0.0).unwrap_err();
     let Cause::Torn { slipping, t } = &failure.cause else { panic!("{failure}") };
     assert!(*t > 1.0 && *t < 1.126 && slipping.slip.joint == "second" && slipping.speed == *t - 1.0, "{failure}");
@@ -405,4 +444,29 @@ fn a_joint_that_was_left_out_is_torn_where_others_do_not_hold_its_motion_any_mor
     // A thousandth of its speed in another joint is what Baumgarte's terms may leave; less is not.
     assert!(run(1.1e-3).is_ok());
     assert!(matches!(run(0.9e-3).unwrap_err().cause, Cause::Torn { .. }));
+}
+
+/// The same of a watch and of a bridge: at the same part of its time, and not by rounding.
+#[test]
+fn when_a_joint_is_torn_does_not_depend_on_units_or_the_size_of_a_machine() {
+    let units: Vec<[f64; 3]> = [[0, 0, 0], [0, -20, 0], [0, 20, 0], [-60, -20, 10], [60, 20, -20], [30, 0, 30]]
+        .map(|exponents: [i32; 3]| exponents.map(|exponent| 2.0_f64.powi(exponent)))
+        .to_vec();
+    for knows in [false, true] {
+        let mut torn = Vec::new();
+        for &units in &units {
+            // Given tolerances as well.
+            let own = Tolerances::new(1e-8, 1e-9 * units[0] * units[1] / units[2]);
+            for tolerances in [Tolerances::default(), own] {
+                for rounding in [0.0, 1e-9] {
+                    let system = Loosened { rounding, units, knows, ..LOOSENED };
+                    let failure = run_of(&system, tolerances.clone()).unwrap_err();
+                    let Cause::Torn { t, .. } = failure.cause else { panic!("{units:?}: {failure}") };
+                    torn.push(t / units[2]);
+                }
+            }
+        }
+        assert!(torn.iter().all(|&t| t > 1.0 && t < 1.126), "{torn:?}");
+        assert!(torn.chunks(4).all(|of_units| of_units == &torn[..4]), "{torn:?}");
+    }
 }

@@ -29,7 +29,7 @@ pub(crate) use impact::impacts_in;
 pub(crate) use impact::{After, Collision, impacts_of};
 #[cfg(feature = "std")]
 pub(crate) use monitor::LoopsInLanes;
-pub(crate) use monitor::{Broken, LoopMonitor};
+pub(crate) use monitor::{Broken, LoopMonitor, Moved};
 pub use shared::share;
 pub(crate) use shared::{kept, redundant};
 

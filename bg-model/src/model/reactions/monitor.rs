@@ -5,7 +5,6 @@
 //! a step that is made from rates alone goes over it. One whose equations need the rates' derivatives, which grow
 //! without bound there, may come so near that the joints no longer say which way the mechanism goes on.
 
-#[cfg(feature = "std")]
 use alloc::vec;
 use alloc::vec::Vec;
 
@@ -17,19 +16,29 @@ use super::{Hold, dropped_of, slipping};
 #[cfg(feature = "std")]
 use crate::model::capability::Joints;
 use crate::model::dynamics::Dynamics;
-use crate::model::holding::{Redundancy, Slipping};
+use crate::model::holding::{HeldNow, Redundancy, Slipping};
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
 use crate::model::scalar::lanes::{Lanes, Vector};
 
-/// The fastest flow that follows from flows which are zero to rounding, in its unit.
+/// The fastest flow that follows from flows which are zero to rounding, as a part of the one that a row would have with
+/// all the energy that there has been so far. That depends neither on units nor on the size of the machine.
 const FOLLOWING: f64 = 1e-6;
 /// How much faster than the fastest of the others it may be: Baumgarte's terms leave some flow.
 const FASTER: f64 = 1e3;
-/// The fastest flow that may follow from others, of which this is the fastest.
+
+/// How fast a row flows beside what it would with 1/2 J, in roots of twice the energy: its flow over the root of its
+/// mobility, J M^-1 J^T. So flows in m/s and in rad/s are comparable. Of rows that nothing with a mass moves it is
+/// infinite, or not a number.
 #[inline(always)]
-fn followed<S: Scalar>(others: S) -> S {
-    others.times(FASTER) + others.alike(FOLLOWING)
+fn speed<S: Scalar>(flow: S, mobility: S) -> S {
+    flow.abs() / mobility.abs().sqrt()
+}
+
+/// The fastest that may follow from others, of which this is the fastest, with this energy (J).
+#[inline(always)]
+fn followed<S: Scalar>(others: S, energy: S) -> S {
+    others.times(FASTER) + energy.times(2.0).sqrt().times(FOLLOWING)
 }
 
 /// A pivot below this part of its row's mobility is of a pose 1e-4 rad from a singular one. Two steps in a row that end
@@ -49,9 +58,22 @@ pub(crate) enum Broken {
     Singular(Redundancy),
 }
 
+/// How much has moved so far.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moved<'a> {
+    /// The largest energy, J; none of a system that does not know what it stores.
+    pub energy: Option<f64>,
+    /// The largest magnitude of each state.
+    pub states: &'a [f64],
+}
+
 /// What is looked at.
 pub(crate) struct LoopMonitor {
     hold: Hold<f64>,
+    /// Room for another state, for what is held there and for what its momenta store.
+    other: Vec<f64>,
+    held_there: Hold<f64>,
+    curvatures: Vec<f64>,
     factors: Factors<f64>,
     dropped: Vec<bool>,
     was_near: bool,
@@ -63,13 +85,29 @@ impl LoopMonitor {
         let held = system.held()?;
         let dropped = dropped_of(held.rigid.len(), held.closing, system.kept());
         let factors = Factors::new(dropped.len());
-        (!held.closing.is_empty()).then(|| Self { hold: Hold::new(held), factors, dropped, was_near: false })
+        let room = || vec![0.0; system.states()];
+        (!held.closing.is_empty()).then(|| Self {
+            hold: Hold::new(held),
+            other: room(),
+            held_there: Hold::new(held),
+            curvatures: room(),
+            factors,
+            dropped,
+            was_near: false,
+        })
     }
 
     /// Looks at time `t` (s) and state `x`. Allocates only where something is wrong.
-    pub fn check(&mut self, system: &dyn Dynamics, (t, x): (f64, &[f64]), negative: &[bool]) -> Option<Broken> {
+    pub fn check(
+        &mut self,
+        system: &dyn Dynamics,
+        at: (f64, &[f64]),
+        negative: &[bool],
+        moved: Moved<'_>,
+    ) -> Option<Broken> {
+        let (t, x) = at;
         system.hold(t, x, negative, &mut self.hold.entries);
-        self.torn().map(Broken::Torn).or_else(|| self.singular().map(Broken::Singular))
+        self.torn(system, at, negative, moved).map(Broken::Torn).or_else(|| self.singular().map(Broken::Singular))
     }
 
     /// Whether `other` leaves the same motions out, and the last pose that was looked at was not near a singular one.
@@ -87,21 +125,69 @@ impl LoopMonitor {
     }
 
     /// The motion that has come apart most.
-    fn torn(&self) -> Option<Slipping> {
+    fn torn(
+        &mut self,
+        system: &dyn Dynamics,
+        at: (f64, &[f64]),
+        negative: &[bool],
+        moved: Moved<'_>,
+    ) -> Option<Slipping> {
         let Self { hold, dropped, .. } = self;
-        let flows = &hold.flows()[..dropped.len()];
+        let HeldNow { flows, mobilities, .. } = hold.held.read(&hold.entries);
+        let of = |row: usize| speed(flows[row], mobilities[row]);
         let fastest = |is_dropped: bool| {
-            let rows = (0..flows.len()).filter(|&row| dropped[row] == is_dropped);
-            rows.max_by(|&a, &b| flows[a].abs().total_cmp(&flows[b].abs()))
+            // What nothing with a mass moves has no energy to be measured by.
+            let rows = (0..dropped.len()).filter(|&row| dropped[row] == is_dropped && of(row).is_finite());
+            rows.max_by(|&a, &b| of(a).total_cmp(&of(b)))
         };
-        let others = fastest(false).map_or(0.0, |row| flows[row].abs());
-        let row = fastest(true).filter(|&row| flows[row].abs() > followed(others))?;
-        Some(slipping(&hold.held, row, flows[row]))
+        let others = fastest(false).map_or(0.0, of);
+        let follows = |row: usize, energy: f64| of(row) <= followed(others, energy);
+        let row = fastest(true).filter(|&row| !follows(row, moved.energy.unwrap_or(0.0)))?;
+        let (flow, mobility) = (flows[row], mobilities[row].abs());
+        // The energy so far may be that before something began to move.
+        let energy = if moved.energy.is_some() {
+            let (t, x) = at;
+            system.energy(t, x, negative, &mut self.curvatures).abs()
+        } else {
+            let largest = self.flow_of_momenta(system, at, negative, moved.states, row);
+            0.5 * largest * largest / mobility
+        };
+        let is_torn = speed(flow, mobility) > followed(others, energy);
+        is_torn.then(|| slipping(&self.hold.held, row, flow))
+    }
+
+    /// The flow of a row by its largest momenta so far, each alone, and by sources: what it is measured by in a system
+    /// that does not know what it stores.
+    fn flow_of_momenta(
+        &mut self,
+        system: &dyn Dynamics,
+        (t, x): (f64, &[f64]),
+        negative: &[bool],
+        largest: &[f64],
+        row: usize,
+    ) -> f64 {
+        let Self { other, held_there, .. } = self;
+        let momenta = held_there.held.moved;
+        let mut flow = |other: &[f64]| {
+            system.hold(t, other, negative, &mut held_there.entries);
+            held_there.flows()[row]
+        };
+        other.copy_from_slice(x);
+        momenta.iter().for_each(|&i| other[i] = 0.0);
+        let rest = flow(other);
+        let mut squares = 0.0;
+        for &i in momenta {
+            other[i] = largest[i].max(x[i].abs());
+            let alone = flow(other) - rest;
+            squares += alone * alone;
+            other[i] = 0.0;
+        }
+        libm::sqrt(squares) + rest.abs()
     }
 
     /// The joint that holds almost what others hold, for the second time in a row.
     fn singular(&mut self) -> Option<Redundancy> {
-        let Self { hold, factors, dropped, was_near } = self;
+        let Self { hold, factors, dropped, was_near, .. } = self;
         factors.factor_where(hold.matrix(), |row, pivot, mobility| dropped[row] || pivot <= NEAR * mobility);
         let found = (0..dropped.len()).find(|&row| factors.follows(row) && !dropped[row]);
         let is_creeping = core::mem::replace(was_near, found.is_some());
@@ -134,13 +220,14 @@ impl<V: Vector> LoopsInLanes<V> {
     }
 
     /// A bit for each run whose pose at time `t` (s) and state `x` is not in the neighbourhood of a singular one, and
-    /// none of whose motions has come apart.
+    /// none of whose motions has come apart, with the largest `energy` (J) so far.
     #[inline(always)]
     pub fn whole<J, const N: usize, const G: usize>(
         &mut self,
         joints: &J,
         (t, x): (Lanes<V>, &SVector<Lanes<V>, N>),
         negative: &[V::Mask; G],
+        energy: Lanes<V>,
     ) -> u8
     where
         J: Joints<Lanes<V>, N, G>,
@@ -148,15 +235,19 @@ impl<V: Vector> LoopsInLanes<V> {
         let Self { hold, factors, pivots, dropped } = self;
         joints.inlined_hold(t, x, negative, &mut hold.entries);
         let (mut fastest, mut others) = (t.alike(0.0), t.alike(0.0));
+        let HeldNow { flows, mobilities, .. } = hold.held.read(&hold.entries);
         for (row, is_dropped) in dropped.iter().enumerate() {
-            let flow = hold.flows()[row].abs();
+            let speed = speed(flows[row], mobilities[row]);
             if *is_dropped {
-                fastest = flow.larger(fastest);
+                fastest = speed.larger(fastest);
             } else {
-                others = flow.larger(others);
+                others = speed.larger(others);
             }
         }
-        let mut whole = !V::bits(V::below(followed(others).0, fastest.0));
+        let (most, infinity) = (followed(others, energy), t.alike(f64::INFINITY));
+        // What is infinite is looked at more closely, too.
+        let follow = V::bits(V::below(fastest.0, most.0)) & V::bits(V::below(most.0, infinity.0));
+        let mut whole = if dropped.contains(&true) { follow } else { u8::MAX };
         factors.factor_without(hold.matrix(), dropped, pivots);
         for (row, [pivot, mobility]) in pivots.iter().enumerate() {
             if !dropped[row] {

@@ -75,18 +75,28 @@ impl EventMonitor {
         clear
     }
 
-    /// Finds the stops that bear the load among those on which something may rest.
-    fn rest(&self, stepper: &mut Stepper<'_>, collision: &mut Collision<f64>) {
+    /// Finds the stops that bear the load among those on which something may rest. What is taken away and reached
+    /// again without end stays: its load sets in at this instant, so that its effort pulls by rounding.
+    fn rest(&mut self, stepper: &mut Stepper<'_>, collision: &mut Collision<f64>) {
         let impacts = impacts_of(stepper.system);
+        let stays = self.repeats(stepper.start.t);
         collision.resting().for_each(|(_, switch)| stepper.negative[switch] = false);
         for _ in 0..CHANGES {
             let effort = stepper.guards_of(End::Start);
             let noise = self.noise_of(stepper, End::Start, &effort);
             collision.loads(&impacts, (stepper.start.t, stepper.start.x.as_slice()), &stepper.negative);
             let is_wrong = |&(k, switch): &(usize, usize)| {
-                if stepper.negative[switch] { collision.load(k) > 0.0 } else { effort[switch] < -noise[switch] }
+                if stepper.negative[switch] {
+                    collision.load(k) > 0.0
+                } else {
+                    !stays && effort[switch] < -noise[switch]
+                }
             };
-            let Some((_, wrong)) = collision.resting().filter(is_wrong).last() else { return };
+            let Some((_, wrong)) = collision.resting().filter(is_wrong).last() else {
+                let pulls = |&(_, switch): &(usize, usize)| stays && !stepper.negative[switch] && effort[switch] < 0.0;
+                collision.resting().filter(pulls).for_each(|(_, switch)| self.leave(switch, effort[switch]));
+                return;
+            };
             stepper.negative[wrong] = !stepper.negative[wrong];
         }
     }
@@ -109,8 +119,10 @@ impl EventMonitor {
         let noise = self.noise_of(stepper, End::Start, &place);
         let allowed = allowed(stepper, &place);
         let mut x = stepper.start.x.clone();
+        // What rebounds again and again at one instant does so by rounding.
+        let repeats = self.repeats(t);
         let is_low = |k: usize, rise: f64, by_accuracy: bool| {
-            rise <= CERTAIN * noise[k] || by_accuracy && rise <= LOW * allowed[k]
+            repeats || rise <= CERTAIN * noise[k] || by_accuracy && rise <= LOW * allowed[k]
         };
         let jumps = collision.strike(&impacts, (t, x.as_mut_slice()), &negative, closed, is_low);
         if jumps {

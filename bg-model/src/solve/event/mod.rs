@@ -35,6 +35,8 @@ use crate::solve::integrator::{Point, first_not_finite};
 /// Events at one instant, to a millionth of a millionth of the time, that end a run.
 const CROWD: u32 = 1000;
 const INSTANT: f64 = 1e-12;
+/// Events at one instant, from which on what rounding decides is decided for rest.
+const REPEATED: u32 = CROWD / 10;
 /// The part of a step for the difference that gives a guard's derivative: it keeps nine digits and its truncation error
 /// is as small.
 const AHEAD: f64 = 1e-6;
@@ -144,6 +146,11 @@ impl EventMonitor {
         }
         self.crowd += 1;
         self.crowd > CROWD
+    }
+
+    /// Whether so many events have been at the instant `t` (s) that rounding is their cause.
+    fn repeats(&self, t: f64) -> bool {
+        self.crowd_start == t && self.crowd > REPEATED
     }
 
     /// Those of `switches` whose guards are at zero, to rounding, at the end of a step that was shortened further.

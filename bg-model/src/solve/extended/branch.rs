@@ -24,6 +24,7 @@ where
         self.system.project(self.t, &self.negative, &mut self.x);
         let guards = |negative: &[bool; G]| self.guards_in(negative);
         (self.negative, _) = branches_by_sign(self.system.first_branches(), guards);
+        self.raise_sizes();
         let value = self.guards();
         let undecided: [bool; G] = std::array::from_fn(|k| value[k].to_f64() == 0.0);
         if undecided.contains(&true) {

@@ -58,13 +58,14 @@ impl<S: Scalar, const N: usize> Extrapolation<S, N> {
         self.end = self.row[self.columns - 1];
     }
 
-    /// The largest difference between the two highest orders, over `tolerance` times 1 + |x|; not a number where the
-    /// end is none.
-    pub fn error(&self, x: &SVector<S, N>, tolerance: f64) -> f64 {
+    /// The largest difference between the two highest orders, over `tolerance` times the size of each state, or the end
+    /// of the step where that is more; not a number where the end is none.
+    pub fn error(&self, sizes: &SVector<f64, N>, tolerance: f64) -> f64 {
         let [.., lower, higher] = &self.row[..] else { return f64::NAN };
         let error = |i: usize| {
-            let scale = tolerance * (1.0 + x[i].to_f64().abs());
-            (higher[i] - lower[i]).to_f64().abs() / scale
+            let difference = (higher[i] - lower[i]).to_f64().abs();
+            // What stays zero has no size.
+            if difference == 0.0 { 0.0 } else { difference / (tolerance * sizes[i].max(higher[i].to_f64().abs())) }
         };
         // A NaN stays.
         (0..N).map(error).fold(0.0, |most, error| if error > most || error.is_nan() { error } else { most })

@@ -10,6 +10,7 @@
 mod branch;
 mod extrapolation;
 mod monitor;
+mod sizes;
 #[cfg(test)]
 mod tests;
 
@@ -29,7 +30,8 @@ pub struct Accuracy {
     /// The columns of the extrapolation, 2 to 20; the order is twice as high. Rate evaluations of a step: their square
     /// + 1.
     pub columns: usize,
-    /// The error estimated for a step, at most this times 1 + |x| in each state's SI unit.
+    /// The error estimated for a step, at most this part of the size of each state: of its largest value, or of a
+    /// small part of the size at which it counts beside the others ([`crate::simulation::sizes`]).
     pub tolerance: f64,
 }
 
@@ -152,6 +154,8 @@ struct Run<'a, S, Sys, const N: usize, const G: usize> {
     t: S,
     x: SVector<S, N>,
     negative: [bool; G],
+    /// How large each state is, in its unit.
+    sizes: SVector<f64, N>,
     /// The size of the next step, s.
     step: f64,
     method: Extrapolation<S, N>,
@@ -176,6 +180,7 @@ where
             t: S::from_f64(span.t0),
             x: *start,
             negative: [false; G],
+            sizes: SVector::zeros(),
             step: FIRST * length,
             method: Extrapolation::new(accuracy.columns),
             monitor: GuardMonitor::new(accuracy.tolerance),
@@ -251,7 +256,7 @@ where
         };
         monitor.begin_step(guards(self.t, &self.x), h);
         self.method.attempt(self.t, &self.x, h, rate, |t, x| monitor.pass(guards(t, x)));
-        let error = self.method.error(&self.x, self.accuracy.tolerance);
+        let error = self.method.error(&self.sizes, self.accuracy.tolerance);
         self.system.project(self.t + h, negative, &mut self.method.end);
         self.monitor.end_step(guards(self.t + h, &self.method.end));
         error
@@ -276,6 +281,13 @@ where
         self.steps += 1;
         self.t = t;
         self.x = self.method.end;
+        if sizes::are_outgrown(&self.sizes, &self.x) {
+            self.raise_sizes();
+        }
+    }
+
+    fn raise_sizes(&mut self) {
+        sizes::raise(&mut self.sizes, self.system, (self.t, &self.x), self.length, self.accuracy.tolerance);
     }
 
     fn check_step(&self, h: S) -> Result<(), Fault> {

@@ -88,7 +88,7 @@ fn an_oscillator_is_followed_to_25_digits() {
     });
     let finish = finish.unwrap();
     assert_eq!((seen, finish.events.len()), (4, 0));
-    assert!((finish.steps, finish.rejected, finish.rate_evaluations) == (92, 0, 9292), "{finish:?}");
+    assert!((finish.steps, finish.rejected, finish.rate_evaluations) == (96, 0, 9696), "{finish:?}");
 }
 
 /// A system with its switch left in the positive branch.
@@ -201,4 +201,29 @@ fn faults_say_what_and_when() {
     assert!((t - 0.75).abs() < 1e-6, "{t}");
     let Fault::EventsAccumulate { switch: 0, t, .. } = run(0.5, 4, &[]) else { panic!("no motion is possible") };
     assert!((t - 0.5).abs() < 1e-9, "{t}");
+}
+
+/// A planet in another unit of length: a power of two, so that nothing is rounded otherwise.
+struct Measured {
+    unit: f64,
+}
+
+impl<S: Scalar<Switch = bool>> System<S, 4, 0> for Measured {
+    fn rate(&self, t: S, x: &SVector<S, 4>, _: &[bool; 0], dx: &mut SVector<S, 4>) {
+        Kepler.rate(t, &x.map(|x| x.times(1.0 / self.unit)), &[], dx);
+        *dx = dx.map(|dx| dx.times(self.unit));
+    }
+}
+
+#[test]
+fn another_unit_takes_the_same_steps() {
+    let run = |unit: f64| {
+        let start = SVector::from([0.5, 0.0, 0.0, 1.75]).map(|x| number(unit * x));
+        let finish = integrate(&Measured { unit }, &start, span(20.0), CLOSE, &[], |_, _, _| {}).unwrap();
+        (finish.steps, finish.rejected, finish.x.map(|x| x.times(1.0 / unit)))
+    };
+    let expected = run(1.0);
+    for exponent in [-40, -20, 20, 40] {
+        assert_eq!(run(2.0_f64.powi(exponent)), expected, "{exponent}");
+    }
 }

@@ -26,6 +26,8 @@ pub use observer::{EachSample, EachStep, Observer, Switching};
 pub use ongoing::Ongoing;
 pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
+#[cfg(feature = "std")]
+pub(crate) use sizes::sizes_within;
 pub use sizes::{raise, sizes, sizes_of};
 
 use crate::model::dynamics::{Dynamics, Typed};

@@ -267,8 +267,8 @@ mod tests {
         let (cost, events) = (run.statistics(), whole.statistics.events);
         // At acos(0.3 / 1.3) = 1.338 s, then every 2.676 s.
         assert_eq!((cost.events, events), (4, 4));
-        // One more, since the first step is estimated.
-        assert_eq!(cost.steps, 1000 + events + 1);
+        // Two more, since the first step is estimated.
+        assert_eq!(cost.steps, 1000 + events + 2);
         // No piece estimates a first step: the next one is as long as the tolerances allow all the time.
         assert!(run.next_step().is_some_and(|step| step > 0.05), "{:?}", run.next_step());
         // DOP853 takes twelve rates a step; a piece that began anew would take two more.

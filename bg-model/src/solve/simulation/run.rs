@@ -136,7 +136,7 @@ impl<'a> Run<'a> {
     pub fn check_joints(&mut self) -> Result<(), Cause> {
         let Stepper { system, end, negative, .. } = &self.stepper;
         let Some(loops) = &mut self.loops else { return Ok(()) };
-        match loops.check(*system, (end.t, end.x.as_slice()), negative) {
+        match loops.check(*system, (end.t, end.x.as_slice()), negative, self.sizes.moved(*system)) {
             Some(Broken::Torn(slipping)) => Err(Cause::Torn { slipping, t: end.t }),
             Some(Broken::Singular(redundancy)) => Err(Cause::Singular { redundancy, t: end.t }),
             None => Ok(()),

@@ -25,6 +25,7 @@ use nalgebra::{DVector, SVector};
 use super::rounding::is_exposed;
 use crate::model::description::StateKind;
 use crate::model::dynamics::{Dynamics, Typed, branches};
+use crate::model::reactions::Moved;
 use crate::model::system::System;
 use crate::solve::integrator::{Absolute, Dop853, Point, Scale, Tolerances, displaced, rounding};
 use crate::solve::stepper::Stepper;
@@ -104,6 +105,10 @@ impl SizeMonitor {
 
     /// Goes on with the tolerances of another one.
     pub fn go_on(&mut self, other: &Self, scale: &mut Scale) {
+        if other.is_leading && !self.is_leading {
+            // Of given tolerances nothing is known of rounding.
+            self.longest = 0.0;
+        }
         (self.relative, self.is_leading) = (other.relative, other.is_leading);
         self.lead(scale);
     }
@@ -132,9 +137,6 @@ impl SizeMonitor {
 
     /// The same where the rate is known.
     pub fn begin(&mut self, stepper: &mut Stepper<'_>) {
-        if !self.is_leading {
-            return;
-        }
         self.sizes.energy = larger(self.sizes.energy, self.work(stepper.system, &stepper.start));
         self.measure(stepper.system, &stepper.start, &stepper.negative);
         self.lead(&mut stepper.scale);
@@ -175,7 +177,7 @@ impl SizeMonitor {
     /// Looks at the end of an accepted step; gives whether the scale has changed.
     pub fn follow(&mut self, stepper: &mut Stepper<'_>) -> bool {
         let outgrows = self.passes_limits(stepper.end.x.as_slice());
-        let is_outgrown = self.is_leading && (outgrows || stepper.h > self.longest);
+        let is_outgrown = outgrows || stepper.h > self.longest;
         if is_outgrown {
             self.renew(stepper);
         }
@@ -195,14 +197,15 @@ impl SizeMonitor {
     }
 
     /// The magnitudes from which on states have outgrown their sizes, and the step (s) from which on it has outgrown
-    /// the noise; infinite where the scale is given.
+    /// the noise.
     #[cfg(feature = "std")]
     pub fn limits(&self) -> (DVector<f64>, f64) {
-        if self.is_leading {
-            (self.limit.clone(), self.longest)
-        } else {
-            (self.limit.map(|_| f64::INFINITY), f64::INFINITY)
-        }
+        (self.limit.clone(), self.longest)
+    }
+
+    /// How much has moved so far.
+    pub fn moved(&self, system: &dyn Dynamics) -> Moved<'_> {
+        Moved { energy: system.stored().map(|_| self.sizes.energy), states: self.sizes.own.as_slice() }
     }
 
     /// The absolute tolerance of state `i` in a run of this scale as it would be without noise.
@@ -216,8 +219,8 @@ impl SizeMonitor {
             self.sizes = before;
         }
         self.measure(stepper.system, &stepper.end, &stepper.negative);
-        // Else projections alone are measured.
-        if stepper.method.measures() {
+        // Of given tolerances, and of projections alone, no rounding is asked for.
+        if self.is_leading && stepper.method.measures() {
             let (end, h) = (stepper.end.clone(), stepper.h);
             self.drift(stepper, &end, end.t - self.t0);
             self.listen(stepper, &end, h);
@@ -344,15 +347,14 @@ impl SizeMonitor {
         &self.sizes.beside * if has_bodies || system.held().is_some() { MIXED } else { 0.0 }
     }
 
-    /// The absolute tolerances and limits of these sizes.
+    /// The limits of these sizes, and the absolute tolerances where they follow them.
     fn lead(&mut self, scale: &mut Scale) {
-        if !self.is_leading {
-            return;
-        }
         for i in 0..self.limit.len() {
-            scale.absolute[i] = larger(self.noise[i], self.without_noise(i, scale));
-            scale.weights[i] = if self.sizes.beside[i] > 0.0 { 1.0 / self.sizes.beside[i] } else { 0.0 };
             self.limit[i] = OUTGROWN / OWN * self.size(i);
+            if self.is_leading {
+                scale.absolute[i] = larger(self.noise[i], self.without_noise(i, scale));
+                scale.weights[i] = if self.sizes.beside[i] > 0.0 { 1.0 / self.sizes.beside[i] } else { 0.0 };
+            }
         }
     }
 
@@ -374,7 +376,15 @@ where
 
 /// The same over slices.
 pub fn sizes_of(system: &dyn Dynamics, t: f64, x: &[f64]) -> DVector<f64> {
-    const AHEAD: f64 = 1.0;
+    // Of other programs nothing is known of how long they will go on.
+    const SECOND: f64 = 1.0;
+    let [own, beside] = sizes_within(system, t, x, SECOND);
+    own.sup(&beside)
+}
+
+/// How large each state is by its own value, and beside the others; of a start at rest by what happens in so many
+/// seconds.
+pub(crate) fn sizes_within(system: &dyn Dynamics, t: f64, x: &[f64], ahead: f64) -> [DVector<f64>; 2] {
     let (mut method, tolerances) = (Dop853::new(), Tolerances::default());
     let start = Point::at(t, DVector::from_column_slice(x));
     let mut stepper = Stepper::new(system, &mut method, Scale::new(&tolerances, x.len()), start);
@@ -383,8 +393,10 @@ pub fn sizes_of(system: &dyn Dynamics, t: f64, x: &[f64]) -> DVector<f64> {
     let mut monitor = SizeMonitor::new(&tolerances, x.len(), t);
     monitor.start(&mut stepper);
     monitor.begin(&mut stepper);
-    monitor.look_ahead(&mut stepper, AHEAD);
-    monitor.sizes.own.sup(&monitor.sizes.beside)
+    monitor.look_ahead(&mut stepper, ahead);
+    let Sizes { own, beside, .. } = monitor.sizes;
+    let beside = if system.stored().is_some() { beside } else { own.map(|_| own.amax()) };
+    [own, beside]
 }
 
 /// The size of the machine: its largest coordinate, m.

@@ -320,20 +320,30 @@ pub(super) fn noted<S: Scalar>(logarithm: S) -> S {
 }
 
 /// An estimate of a first step from `start`, s, at most `longest`. Takes one rate.
+///
+/// HINIT takes (0.01 / d)^(1 / order), d the larger one of the scaled first and second derivatives, the one in 1/s, the
+/// other in 1/s^2: of a machine whose time is not about a second that is far too long or too short. Here they count in
+/// the time T in which a state changes by itself, or its rate does: h = T (0.01 / a)^(1 / order) with a the change in
+/// that time. With T = 1 s that is HINIT's.
 pub(super) fn first_step(flow: &Flow<'_>, start: &Point, scale: &Scale, order: f64, longest: f64) -> f64 {
     // The factors are those of HINIT; where it takes 1e-6 for a state at rest, this part of the longest step is taken.
     const AT_REST: f64 = 1e-6;
     let rates = scale.norm(start.rate.as_slice(), start.x.as_slice());
     let states = scale.norm(start.x.as_slice(), start.x.as_slice());
-    let is_at_rest = rates <= 1e-5 || states <= 1e-5;
+    let is_at_rest = rates * longest <= 1e-5 || states <= 1e-5;
     let guess = if is_at_rest { AT_REST * longest } else { states / rates * 0.01 }.min(longest);
     let ahead = &start.x + &start.rate * guess;
     let mut rate = DVector::zeros(ahead.len());
     flow.rate(start.t + guess, ahead.as_slice(), rate.as_mut_slice());
-    let bend = scale.norm((rate - &start.rate).as_slice(), start.x.as_slice()) / guess;
-    let steepest = bend.max(rates);
-    let step =
-        if steepest <= 1e-15 { (AT_REST * longest).max(guess * 1e-3) } else { libm::pow(0.01 / steepest, 1.0 / order) };
+    let change = scale.norm((rate - &start.rate).as_slice(), start.x.as_slice());
+    let steepest = change.max(rates);
+    let of_rates = if change > 0.0 { steepest / change * guess } else { longest };
+    let time = if is_at_rest { of_rates } else { of_rates.min(states / rates) };
+    let step = if steepest * longest <= 1e-15 {
+        (AT_REST * longest).max(guess * 1e-3)
+    } else {
+        time * libm::pow(0.01 / (steepest * time), 1.0 / order)
+    };
     let step = step.min(100.0 * guess).min(longest);
     if step > 0.0 { step } else { AT_REST * longest }
 }

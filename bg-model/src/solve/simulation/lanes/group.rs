@@ -46,6 +46,8 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     scale: Scale<Lanes<V>>,
     limit: States<V, N>,
     longest: Lanes<V>,
+    /// The largest energies so far, J; zero where they are not known.
+    energy: Lanes<V>,
     /// Joints that close loops, if they are looked at here.
     loops: Option<LoopsInLanes<V>>,
     /// A bit for each run that is known not to start in the neighbourhood of a singular pose, and for the ends of the
@@ -93,6 +95,7 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
             scale: Scale { relative, absolute, coarsest, growth, weights },
             limit: SVector::repeat(Lanes::from_f64(f64::INFINITY)),
             longest: Lanes::from_f64(f64::INFINITY),
+            energy: zero,
             loops: None,
             whole: [0; 2],
             reach: zero,
@@ -182,8 +185,10 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         }
     }
 
-    /// What errors are allowed in a run, and from which magnitudes and step (s) on it has outgrown its sizes.
-    pub fn measure(&mut self, lane: usize, scale: &Scale, (limit, longest): &(DVector<f64>, f64)) {
+    /// What errors are allowed in a run, from which magnitudes and step (s) on it has outgrown its sizes, and the
+    /// largest energy so far, J.
+    pub fn measure(&mut self, lane: usize, scale: &Scale, (limit, longest): &(DVector<f64>, f64), energy: f64) {
+        *self.energy.0.at_mut(lane) = energy;
         put(lane, &mut self.scale.absolute, &scale.absolute);
         put(lane, &mut self.scale.weights, &scale.weights);
         put(lane, self.limit.as_mut_slice(), limit.as_slice());
@@ -332,7 +337,7 @@ where
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
         let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
-        let Group { controllers, led, plain, reach, errors, judged, loops, whole, .. } = group;
+        let Group { controllers, led, plain, reach, errors, judged, loops, whole, energy, .. } = group;
         let error = Lanes::select(V::below(norm.0, reach.0), *reach, norm);
         // Of the others it is a number of an ordinary size.
         *errors = Lanes::select(V::mask(*led), error, h.alike(1.5));
@@ -348,7 +353,7 @@ where
             // The ends of steps that may be accepted, then those of steps that err too much before they were projected.
             let mut ends = [0; 2];
             for (whole, x) in ends.iter_mut().zip([&*end, &*reached]) {
-                *whole = loops.whole(joints, (t_end, x), negative);
+                *whole = loops.whole(joints, (t_end, x), negative, *energy);
                 if refused == 0 {
                     break;
                 }

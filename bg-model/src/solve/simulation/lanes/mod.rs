@@ -550,5 +550,6 @@ fn measure<V, const N: usize, const G: usize>(group: &mut Group<V, N, G>, place:
 where
     V: Vector,
 {
-    group.measure(place, &run.stepper.scale, &run.sizes.limits());
+    let energy = run.sizes.moved(run.stepper.system).energy.unwrap_or(0.0);
+    group.measure(place, &run.stepper.scale, &run.sizes.limits(), energy);
 }
