@@ -1,6 +1,10 @@
 //! The procedural macro `bond_graph!`. Its documentation is the reference of the language, a page of `docs/language` for each
 //! chapter; users get the macro as `bg_model::bond_graph`, together with what generated code needs at run time.
 
+extern crate proc_macro;
+
+mod file;
+
 use proc_macro::TokenStream;
 
 /// Compiles multibond graphs of mechanisms, machines and circuits to Rust types that run.
@@ -45,7 +49,14 @@ use proc_macro::TokenStream;
 #[doc = include_str!("../docs/language/faults.md")]
 #[proc_macro]
 pub fn bond_graph(tokens: TokenStream) -> TokenStream {
-    bg_compiler::compile(tokens.into()).into()
+    let tokens = tokens.into();
+    match file::named(&tokens) {
+        Some(named) => {
+            let root = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default();
+            file::compile(&named, root.as_ref()).into()
+        }
+        None => bg_compiler::compile(tokens).into(),
+    }
 }
 
 /// The picture of a bond graph as HTML, for the documentation of a generated model. Only generated code calls it.

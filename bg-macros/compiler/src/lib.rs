@@ -28,7 +28,7 @@ pub use bg_expressions::expr;
 use bg_expressions::random;
 use proc_macro2::TokenStream;
 
-use crate::fault::compile_errors;
+use crate::fault::{Faults, compile_errors};
 use crate::source::{part, syntax};
 
 /// Compiles one macro call. Faults come out as compile errors at their tokens, together with stubs of the promised
@@ -38,9 +38,23 @@ use crate::source::{part, syntax};
 /// part's macro, which calls `bond_graph!` again, with the part in front of the tokens.
 #[must_use]
 pub fn compile(tokens: TokenStream) -> TokenStream {
+    let (mut items, faults) = compiled(tokens);
+    items.extend(compile_errors(&faults));
+    items
+}
+
+/// The same without the errors, and whether there are any.
+#[must_use]
+pub fn compile_items(tokens: TokenStream) -> (TokenStream, bool) {
+    let (items, faults) = compiled(tokens);
+    (items, !faults.is_empty())
+}
+
+/// The items of a call, or stubs of them with the faults.
+fn compiled(tokens: TokenStream) -> (TokenStream, Faults) {
     let (source, faults) = syntax::parse_leniently(tokens.clone());
     if let Some(path) = part::unasked(&source) {
-        return emit::question(path, &tokens);
+        return (emit::question(path, &tokens), Faults::new());
     }
     let models = if faults.is_empty() { pipeline::models(&source) } else { Err(faults) };
     let mut items: TokenStream = emit::parts(&source);
@@ -49,12 +63,12 @@ pub fn compile(tokens: TokenStream) -> TokenStream {
             items.extend(emit::version());
             items.extend(models.iter().map(emit::model));
             items.extend(emit::anchors(&source, &models));
+            (items, Faults::new())
         }
         Err(faults) => {
             items.extend(emit::anchors_with_faults(&source, &faults));
-            items.extend(compile_errors(&faults));
             items.extend(emit::stub(&part::flatten_leniently(&source).0.source));
+            (items, faults)
         }
     }
-    items
 }

@@ -9,7 +9,7 @@ use crate::fault::{Faults, Staged};
 use crate::graph;
 use crate::graph::causality::{self, CausalGraph};
 use crate::program::elimination::{self, Elimination};
-use crate::program::{self, Counts, Programs};
+use crate::program::{self, Counts, Deferred, Programs, deferred};
 use crate::source::ast::{Graph, Name, Source};
 use crate::source::part::{self, Flattened};
 use crate::source::scene::{self, Variant};
@@ -65,7 +65,7 @@ pub struct Compiled {
     /// How large the states of storages are beside the energy.
     pub sizes: Sizes,
     /// How I - c J is factored and solved.
-    pub elimination: Elimination,
+    pub elimination: Deferred<Elimination>,
     /// What every generated function evaluates, in order.
     pub programs: Programs,
 }
@@ -198,12 +198,15 @@ pub fn arrange(variant: &Variant) -> Staged<Arranged> {
 pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let (source, is_scene, scenes) = (variant.graph.clone(), variant.scene.is_some(), variant.scenes.clone());
     let Arranged { derived, reduction, mut equations } = arrange(variant)?;
-    let mut jacobian = jacobian::differentiate(&equations);
+    let jacobian = jacobian::differentiate(&equations);
     equations.close();
-    let mut second_order = second_order::differentiate(&equations);
-    let elimination = elimination::plan(equations.states.len(), jacobian.unknowns.len(), &jacobian.places());
+    let second_order = second_order::differentiate(&equations);
+    let elimination = {
+        let (states, unknowns, places) = (equations.states.len(), jacobian.unknowns.len(), jacobian.places());
+        deferred(move || elimination::plan(states, unknowns, &places))
+    };
     let mut sizes = sizes::differentiate(&equations);
-    let programs = program::programs(&mut equations, &mut jacobian, &mut second_order, &mut sizes);
+    let programs = program::programs(&mut equations, &jacobian, &second_order, &mut sizes);
     Ok(Compiled {
         source,
         is_scene,

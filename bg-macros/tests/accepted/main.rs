@@ -1,5 +1,6 @@
 //! Graphs without a fault, and the code that uses what they promise.
 
+mod file;
 mod motor;
 mod names;
 mod parts;

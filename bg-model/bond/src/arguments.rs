@@ -103,7 +103,7 @@ pub fn asked(words: impl Iterator<Item = OsString>) -> Result<Asked, String> {
 }
 
 /// The commands that ask for one scene.
-const OF_ONE_SCENE: [&str; 6] = ["run", "report", "linearize", "sensitivity", "identify", "fmu"];
+const OF_ONE_SCENE: [&str; 5] = ["run", "linearize", "sensitivity", "identify", "fmu"];
 
 /// The only scene beside the one that stands for the graph that a command asks for; none where it may ask for all.
 pub fn only_scene(command: &[String], options: &[OsString]) -> Option<String> {

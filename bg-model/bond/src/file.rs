@@ -8,7 +8,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use bg_import::{Format, Options, import_file};
-use bg_loaded::{Fault, Graph, load_where};
+use bg_loaded::{Counted, Fault, Graph, Wanted, load_wanted};
 use bg_workbench::files::console;
 use bg_workbench::scenes::in_small_letters;
 use thiserror::Error;
@@ -86,13 +86,17 @@ fn imported(format: Format, path: &Path) -> Result<String, FileFault> {
     Ok(imported.text)
 }
 
-/// The graphs of a text; of their scenes only the one called `scene` on the command line, where it is said.
+/// The graphs of a text; where a command asks for one scene only, called `scene` on the command line or not said, only what
+/// runs it.
 ///
 /// # Errors
 /// All faults of the first stage that has any.
 pub fn graphs(text: &Text, scene: Option<&str>) -> Result<Vec<Graph>, Vec<Fault>> {
+    let counted = if scene.is_some() { Counted::Made } else { Counted::All };
     let (text, scene) = (text.text.clone(), scene.map(str::to_owned));
     let is_wanted = move |name: &str| scene.as_ref().is_none_or(|scene| in_small_letters(name) == *scene);
-    let compiler = std::thread::Builder::new().stack_size(STACK).spawn(move || load_where(&text, &is_wanted));
+    let compiler = std::thread::Builder::new()
+        .stack_size(STACK)
+        .spawn(move || load_wanted(&text, Wanted { scene: &is_wanted, counted }));
     compiler.expect("a thread can be started").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }

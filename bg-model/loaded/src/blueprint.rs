@@ -1,21 +1,27 @@
 //! What a model is made of, once for all its parameters: its tables and its programs.
 //!
-//! In: a [`Compiled`]. Out: a [`Blueprint`], of which [`Interpreted`](crate::Interpreted) makes models.
+//! In: a [`Compiled`]. Out: a [`Blueprint`], of which [`Interpreted`](crate::Interpreted) makes models. Derivatives, what is
+//! for states of second order and the elimination are made when they are first asked for: many runs do without.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use bg_compiler::expr::Symbol;
 use bg_compiler::pipeline::Compiled;
-use bg_compiler::program::{self, Operand, Operation, Programs, Routine, Running, SecondOrderPrograms, Starting};
-use bg_compiler::tables::{EliminationTable, Loop, tables};
+use bg_compiler::program::{
+    Deferred, Derivatives, Operand, Operation, Program, Programs, Routine, Running, SecondOrderPrograms, Starting,
+    deferred,
+};
+use bg_compiler::tables::{self, Counted, EliminationTable, Loop};
+use bg_model::linear::Sparsity;
 use bg_model::linear::table::Slot;
 
 use crate::code::Code;
 use crate::series::SeriesCode;
-use crate::statics::{Statics, statics};
+use crate::statics::{Statics, places, statics};
 
 /// A model, whatever its parameters, inputs and numbers.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Blueprint {
     pub(crate) statics: Statics,
     pub(crate) programs: Codes,
@@ -23,14 +29,13 @@ pub struct Blueprint {
     pub(crate) projected: Vec<usize>,
     pub(crate) settled: Vec<usize>,
     pub(crate) second: Range<usize>,
-    pub(crate) operations_of_forces: Option<[u32; 2]>,
     pub(crate) first_branches: Vec<bool>,
     pub(crate) loops: Vec<Loop>,
-    pub(crate) elimination: Elimination,
+    pub(crate) elimination: Deferred<Elimination>,
 }
 
 /// How I - c J is factored and solved.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Elimination {
     pub slots: Vec<Slot>,
     pub products: Vec<(u32, u32)>,
@@ -40,14 +45,14 @@ pub struct Elimination {
 }
 
 /// A program with constants of its own.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Alone {
     pub constants: Code,
     pub code: Code,
 }
 
 /// All programs.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Codes {
     /// Those of the running model have the same constants.
     pub constants: Code,
@@ -60,9 +65,8 @@ pub struct Codes {
     pub settle: Code,
     pub stored_energy: Code,
     pub powers: Code,
-    pub jacobian: Alone,
-    pub damping: Option<Alone>,
-    pub second: Option<Second>,
+    pub derivatives: Deferred<DerivativeCodes>,
+    pub second: Option<Deferred<Second>>,
     pub holding: Option<Alone>,
     pub impacts: Option<Alone>,
     pub sizes: Alone,
@@ -74,30 +78,41 @@ pub struct Codes {
     pub required: Option<Alone>,
     pub required_at_start: Option<Alone>,
     pub not_finite: Alone,
-    pub series: SeriesCode,
+    pub series: Deferred<SeriesCode>,
+}
+
+/// The derivatives of the rates.
+#[derive(Debug)]
+pub struct DerivativeCodes {
+    pub jacobian: Alone,
+    /// Those among states that are not of second order, with their places, where they have a program.
+    pub damping: Option<(Sparsity, Alone)>,
 }
 
 /// The programs for states of second order.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Second {
     pub constants: Code,
     pub derivatives: Code,
     /// Rates with second derivatives in their places, where they are one program.
     pub forces: Option<Code>,
+    /// The operations of a rate and of one with second derivatives.
+    pub operations: [u32; 2],
 }
 
 impl Blueprint {
     /// The blueprint of a compiled model.
     #[must_use]
-    pub fn of(model: &Compiled) -> Self {
-        let tables = tables(model);
-        let Programs { running, second_order, .. } = &model.programs;
-        let small = |count: usize| u32::try_from(count).expect("fewer than 2^32 operations");
+    pub fn of(model: Compiled, counted: Counted) -> Self {
+        let tables = tables::tables(&model, counted);
+        let statics = statics(&tables);
+        let damped = tables::damping(&model);
+        let Compiled { equations, programs, elimination, .. } = model;
+        let rows = Rows(equations.solution.multipliers.into());
         Self {
-            statics: statics(&tables),
-            programs: codes(model),
-            operations_of_forces: second_order.as_ref().map(|second| second.operations(running).map(small)),
-            elimination: elimination(&tables.elimination),
+            statics,
+            programs: codes(programs, &rows, damped, !tables.loops.is_empty()),
+            elimination: deferred(move || self::elimination(&tables::elimination(&elimination))),
             closing_rows: tables.closing_rows,
             projected: tables.projected,
             settled: tables.settled,
@@ -119,21 +134,46 @@ impl Blueprint {
     }
 }
 
-fn codes(model: &Compiled) -> Codes {
-    // The reactions have the numbers of their rows, as the table of what is calculated for them.
-    let code = |routine: &Routine| Code::of(&in_rows(model, routine));
-    let alone = |of: &program::Program<1>| Alone { constants: code(&of.constants), code: code(&of.routines[0]) };
-    let some = |of: &Option<program::Program<1>>| of.as_ref().map(alone);
-    let Programs { running, jacobian, damping, second_order, holding, impacts, sizes, starting, required, .. } =
-        &model.programs;
-    let Running { constants, rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers, .. } =
-        running;
-    let Starting { guesses, gaps, gap_sizes, start_state, sides } = starting;
-    let second = |of: &SecondOrderPrograms| Second {
-        constants: code(&of.constants),
-        derivatives: code(&of.second_derivatives),
-        forces: of.forces.as_ref().map(code),
-    };
+/// The reactions in the order of their rows.
+#[derive(Clone)]
+struct Rows(Arc<[Symbol]>);
+
+impl Rows {
+    /// The program of a routine, in which reactions have the numbers of their rows.
+    fn code(&self, routine: &Routine) -> Code {
+        Code::of(&self.numbered(routine))
+    }
+
+    fn alone(&self, of: &Program<1>) -> Alone {
+        Alone { constants: self.code(&of.constants), code: self.code(&of.routines[0]) }
+    }
+
+    fn numbered(&self, routine: &Routine) -> Routine {
+        let operand = |operand: Operand| match operand {
+            Operand::Symbol(symbol @ Symbol::Multiplier(_)) => {
+                let row = self.0.iter().position(|&other| other == symbol);
+                Operand::Symbol(Symbol::numbered(Symbol::Multiplier, row.expect("a reaction that is solved for")))
+            }
+            other => other,
+        };
+        let mut routine = routine.clone();
+        for of in &mut routine.assignments {
+            of.operation = Operation::map(&of.operation, operand);
+        }
+        routine.results.iter_mut().for_each(|result| *result = operand(*result));
+        routine
+    }
+}
+
+fn codes(programs: Programs, rows: &Rows, damped: Vec<(usize, usize)>, finds: bool) -> Codes {
+    let (code, alone) = (|routine: &Routine| rows.code(routine), |of: &Program<1>| rows.alone(of));
+    let some = |of: &Option<Program<1>>| of.as_ref().map(alone);
+    let Programs {
+        running, derivatives, second_order, holding, impacts, sizes, starting, required, not_finite, ..
+    } = programs;
+    let Running { constants, rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers } =
+        &running;
+    let Starting { guesses, gaps, gap_sizes, start_state, sides } = &starting;
     Codes {
         constants: code(constants),
         rate: code(rate),
@@ -145,12 +185,11 @@ fn codes(model: &Compiled) -> Codes {
         settle: code(settle),
         stored_energy: code(stored_energy),
         powers: code(powers),
-        jacobian: alone(jacobian),
-        damping: some(damping),
-        second: second_order.as_ref().map(second),
-        holding: some(holding),
-        impacts: some(impacts),
-        sizes: alone(sizes),
+        derivatives: derivative_codes(derivatives, rows.clone(), damped),
+        second: second_order.map(|of| second(of, rows.clone(), rate.counts.total())),
+        holding: some(&holding),
+        impacts: some(&impacts),
+        sizes: alone(&sizes),
         guesses: alone(guesses),
         gaps: alone(gaps),
         gap_sizes: alone(gap_sizes),
@@ -158,31 +197,35 @@ fn codes(model: &Compiled) -> Codes {
         sides: some(sides),
         required: some(&required[0]),
         required_at_start: some(&required[1]),
-        not_finite: alone(&model.programs.not_finite),
-        series: SeriesCode::of(rate, model.equations.found() > 0),
+        not_finite: alone(&not_finite),
+        series: {
+            let rate = running.rate;
+            deferred(move || SeriesCode::of(&rate, finds))
+        },
     }
 }
 
-/// The routine with the row of each reaction in place of its number.
-fn in_rows(model: &Compiled, routine: &Routine) -> Routine {
-    let operand = |operand: Operand| match operand {
-        Operand::Symbol(symbol @ Symbol::Multiplier(_)) => {
-            let row = model.equations.solution.row(symbol).expect("a reaction that is solved for");
-            Operand::Symbol(Symbol::numbered(Symbol::Multiplier, row))
-        }
-        other => other,
-    };
-    let mut routine = routine.clone();
-    for of in &mut routine.assignments {
-        of.operation = Operation::map(&of.operation, operand);
-    }
-    routine.results.iter_mut().for_each(|result| *result = operand(*result));
-    routine
+fn derivative_codes(of: Deferred<Derivatives>, rows: Rows, damped: Vec<(usize, usize)>) -> Deferred<DerivativeCodes> {
+    deferred(move || {
+        let Derivatives { jacobian, damping } = &*of;
+        let damping = damping.as_ref().map(|of| (Sparsity::Places(places(&damped)), rows.alone(of)));
+        DerivativeCodes { jacobian: rows.alone(jacobian), damping }
+    })
+}
+
+fn second(of: Deferred<SecondOrderPrograms>, rows: Rows, rate: usize) -> Deferred<Second> {
+    let small = |count: usize| u32::try_from(count).expect("fewer than 2^32 operations");
+    deferred(move || Second {
+        constants: rows.code(&of.constants),
+        derivatives: rows.code(&of.second_derivatives),
+        forces: of.forces.as_ref().map(|forces| rows.code(forces)),
+        operations: of.operations(rate).map(small),
+    })
 }
 
 fn elimination(of: &EliminationTable) -> Elimination {
     let small = |index: usize| u32::try_from(index).expect("fewer than 2^32 factors");
-    let slot = |of: &bg_compiler::tables::Slot| Slot {
+    let slot = |of: &tables::Slot| Slot {
         entry: of.entry.map(small),
         end: small(of.end),
         is_pivot: of.is_pivot,

@@ -3,7 +3,7 @@
 //! In: a [`Blueprint`], values of its parameters, its inputs. Out: an [`Interpreted`] model, over slices and in any
 //! scalar, with the bits of generated code.
 
-use std::cell::RefCell;
+use std::cell::{OnceCell, RefCell};
 use std::sync::Arc;
 
 use bg_compiler::expr::Symbol;
@@ -41,7 +41,8 @@ pub struct Decided {
     pub sides: Vec<f64>,
 }
 
-/// The rows of values of the programs that are evaluated while a model runs.
+/// The rows of values of the programs that are evaluated while a model runs; those with constants of their own are made
+/// when they are first evaluated.
 #[derive(Debug)]
 pub(crate) struct Rows<S> {
     pub rate: RefCell<Row<S>>,
@@ -53,15 +54,18 @@ pub(crate) struct Rows<S> {
     pub settle: RefCell<Row<S>>,
     pub stored_energy: RefCell<Row<S>>,
     pub powers: RefCell<Row<S>>,
-    pub jacobian: RefCell<Row<S>>,
-    pub damping: Option<RefCell<Row<S>>>,
-    pub derivatives: Option<RefCell<Row<S>>>,
-    pub forces: Option<RefCell<Row<S>>>,
-    pub holding: Option<RefCell<Row<S>>>,
-    pub impacts: Option<RefCell<Row<S>>>,
-    pub sizes: RefCell<Row<S>>,
-    pub not_finite: RefCell<Row<S>>,
+    pub jacobian: Own<S>,
+    pub damping: Own<S>,
+    pub derivatives: Own<S>,
+    pub forces: Own<S>,
+    pub holding: Own<S>,
+    pub impacts: Own<S>,
+    pub sizes: Own<S>,
+    pub not_finite: Own<S>,
 }
+
+/// A row of a program with constants of its own.
+pub(crate) type Own<S> = OnceCell<RefCell<Row<S>>>;
 
 /// What a program reads at one moment, beside constants.
 #[derive(Clone, Copy)]
@@ -120,7 +124,7 @@ impl<S: Scalar> Interpreted<S> {
         decided: Decided,
     ) -> Self {
         let constants = table(&blueprint.programs.constants, &values, &decided);
-        let rows = Rows::of(&blueprint.programs, &constants, |program| table(program, &values, &decided));
+        let rows = Rows::of(&blueprint.programs, &constants);
         Self { blueprint: Arc::clone(blueprint), parameters, values, inputs, decided, constants, rows }
     }
 
@@ -164,7 +168,24 @@ impl<S: Scalar> Interpreted<S> {
         code.evaluate(row, |symbol| self.symbol(symbol, &moment), moment.negative, to);
     }
 
+    /// The row of a program with these constants of its own.
+    pub(crate) fn own<'a>(&self, row: &'a Own<S>, constants: &Code, code: &Code) -> &'a RefCell<Row<S>> {
+        row.get_or_init(|| RefCell::new(code.row(&table(constants, &self.values, &self.decided))))
+    }
+
+    /// Writes what a program with constants of its own gives at a moment.
+    pub(crate) fn alone(&self, of: &Alone, row: &Own<S>, moment: Moment<'_, S>, to: &mut [S]) {
+        self.evaluate(&of.code, self.own(row, &of.constants, &of.code), moment, to);
+    }
+
     /// The same as a list.
+    pub(crate) fn alone_listed(&self, of: &Alone, row: &Own<S>, moment: Moment<'_, S>) -> Vec<S> {
+        let mut results = vec![S::from_f64(0.0); of.code.results()];
+        self.alone(of, row, moment, &mut results);
+        results
+    }
+
+    /// What a program gives at a moment as a list.
     pub(crate) fn listed(&self, code: &Code, row: &RefCell<Row<S>>, moment: Moment<'_, S>) -> Vec<S> {
         let mut results = vec![S::from_f64(0.0); code.results()];
         self.evaluate(code, row, moment, &mut results);
@@ -256,10 +277,8 @@ fn table<S: Scalar>(constants: &Code, values: &[S], decided: &Decided) -> Vec<S>
 }
 
 impl<S: Scalar> Rows<S> {
-    fn of(programs: &Codes, running: &[S], table: impl Fn(&Code) -> Vec<S>) -> Self {
+    fn of(programs: &Codes, running: &[S]) -> Self {
         let row = |code: &Code| RefCell::new(code.row(running));
-        let alone = |of: &Alone| RefCell::new(of.code.row(&table(&of.constants)));
-        let second = programs.second.as_ref().map(|second| (second, table(&second.constants)));
         Self {
             rate: row(&programs.rate),
             guards: row(&programs.guards),
@@ -270,14 +289,14 @@ impl<S: Scalar> Rows<S> {
             settle: row(&programs.settle),
             stored_energy: row(&programs.stored_energy),
             powers: row(&programs.powers),
-            jacobian: alone(&programs.jacobian),
-            damping: programs.damping.as_ref().map(alone),
-            derivatives: second.as_ref().map(|(second, table)| RefCell::new(second.derivatives.row(table))),
-            forces: second.as_ref().and_then(|(second, table)| Some(RefCell::new(second.forces.as_ref()?.row(table)))),
-            holding: programs.holding.as_ref().map(alone),
-            impacts: programs.impacts.as_ref().map(alone),
-            sizes: alone(&programs.sizes),
-            not_finite: alone(&programs.not_finite),
+            jacobian: OnceCell::new(),
+            damping: OnceCell::new(),
+            derivatives: OnceCell::new(),
+            forces: OnceCell::new(),
+            holding: OnceCell::new(),
+            impacts: OnceCell::new(),
+            sizes: OnceCell::new(),
+            not_finite: OnceCell::new(),
         }
     }
 }

@@ -14,4 +14,4 @@ mod text;
 
 pub use blueprint::Blueprint;
 pub use interpreted::Interpreted;
-pub use text::{Fault, Graph, Model, load, load_where};
+pub use text::{Counted, Fault, Graph, Model, Wanted, load, load_wanted};

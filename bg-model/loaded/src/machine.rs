@@ -81,8 +81,7 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn not_finite(&self, t: S, x: &[S], negative: &[S::Switch]) -> Option<Origin> {
-        let code = &self.programs().not_finite.code;
-        let laws = self.listed(code, &self.rows.not_finite, Moment::at(t, x, negative));
+        let laws = self.alone_listed(&self.programs().not_finite, &self.rows.not_finite, Moment::at(t, x, negative));
         let laws = self.blueprint.statics.fallible.iter().zip(laws).map(|(&[kind, name], value)| (kind, name, value));
         let inputs = self.description().inputs.iter().zip(&self.inputs);
         let inputs = inputs.map(|(info, input)| ("input", info.name, input.value(t)));
@@ -94,21 +93,21 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn jacobian(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S], slope: &mut [S]) {
-        let code = &self.programs().jacobian.code;
-        let results = self.listed(code, &self.rows.jacobian, Moment::at(t, x, negative));
-        let (of_states, of_time) = results.split_at(code.results() - slope.len());
+        let of = &self.programs().derivatives.jacobian;
+        let results = self.alone_listed(of, &self.rows.jacobian, Moment::at(t, x, negative));
+        let (of_states, of_time) = results.split_at(results.len() - slope.len());
         entries.copy_from_slice(of_states);
         slope.copy_from_slice(of_time);
     }
 
     fn damping_sparsity(&self) -> Sparsity {
-        self.blueprint.statics.damping.unwrap_or_else(|| self.sparsity())
+        self.programs().derivatives.damping.as_ref().map_or_else(|| self.sparsity(), |(sparsity, _)| *sparsity)
     }
 
     fn damping(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
-        match (&self.programs().damping, &self.rows.damping) {
-            (Some(of), Some(row)) => self.evaluate(&of.code, row, Moment::at(t, x, negative), entries),
-            _ => self.jacobian(t, x, negative, entries, &mut x.to_vec()),
+        match &self.programs().derivatives.damping {
+            Some((_, of)) => self.alone(of, &self.rows.damping, Moment::at(t, x, negative), entries),
+            None => self.jacobian(t, x, negative, entries, &mut x.to_vec()),
         }
     }
 
@@ -147,15 +146,18 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn second_derivatives(&self, x: &[S], dx: &mut [S]) {
-        let (Some(of), Some(row)) = (&self.programs().second, &self.rows.derivatives) else { return };
+        let Some(of) = &self.programs().second else { return };
+        let row = self.own(&self.rows.derivatives, &of.constants, &of.derivatives);
         let rates = dx.to_vec();
         let moment = Moment { rates: &rates, ..Moment::at(S::from_f64(0.0), x, &[]) };
         self.evaluate(&of.derivatives, row, moment, &mut dx[self.second()]);
     }
 
     fn forces(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]) {
-        let of = self.programs().second.as_ref().and_then(|second| second.forces.as_ref());
-        if let (Some(code), Some(row)) = (of, &self.rows.forces) {
+        if let Some(of) = &self.programs().second
+            && let Some(code) = &of.forces
+        {
+            let row = self.own(&self.rows.forces, &of.constants, code);
             self.evaluate(code, row, Moment::at(t, x, negative), dx);
         } else {
             self.rate(t, x, negative, dx);
@@ -164,7 +166,7 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn operations_of_forces(&self) -> Option<[u32; 2]> {
-        self.blueprint.operations_of_forces
+        self.programs().second.as_ref().map(|second| second.operations)
     }
 
     fn series(&self) -> Option<SeriesSize> {
@@ -193,8 +195,8 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn hold(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
-        if let (Some(of), Some(row)) = (&self.programs().holding, &self.rows.holding) {
-            self.evaluate(&of.code, row, Moment::at(t, x, negative), entries);
+        if let Some(of) = &self.programs().holding {
+            self.alone(of, &self.rows.holding, Moment::at(t, x, negative), entries);
         }
     }
 
@@ -207,8 +209,8 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn impact(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
-        if let (Some(of), Some(row)) = (&self.programs().impacts, &self.rows.impacts) {
-            self.evaluate(&of.code, row, Moment::at(t, x, negative), entries);
+        if let Some(of) = &self.programs().impacts {
+            self.alone(of, &self.rows.impacts, Moment::at(t, x, negative), entries);
         }
     }
 
@@ -217,8 +219,7 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn energy(&self, t: S, x: &[S], negative: &[S::Switch], curvatures: &mut [S]) -> S {
-        let code = &self.programs().sizes.code;
-        let results = self.listed(code, &self.rows.sizes, Moment::at(t, x, negative));
+        let results = self.alone_listed(&self.programs().sizes, &self.rows.sizes, Moment::at(t, x, negative));
         let (energy, of_states) = results.split_first().expect("the energy comes first");
         curvatures.copy_from_slice(of_states);
         *energy

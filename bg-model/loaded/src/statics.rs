@@ -28,7 +28,6 @@ pub struct Statics {
     /// Kind and name of the laws that can give what is not finite.
     pub fallible: Vec<[&'static str; 2]>,
     pub sparsity: Sparsity,
-    pub damping: Option<Sparsity>,
 }
 
 /// The tables of one model.
@@ -44,7 +43,6 @@ pub fn statics(of: &Tables) -> Statics {
             0 => Sparsity::Places(places(&of.jacobian)),
             unknowns => Sparsity::Bordered { places: places(&of.jacobian), unknowns },
         },
-        damping: of.damping.as_ref().map(|of| Sparsity::Places(places(of))),
     }
 }
 
@@ -56,7 +54,8 @@ fn each<T, U>(of: &[T], make: impl FnMut(&T) -> U) -> &'static [U] {
     Vec::leak(of.iter().map(make).collect())
 }
 
-fn places(of: &[(usize, usize)]) -> &'static [(u16, u16)] {
+/// Row and column of entries.
+pub fn places(of: &[(usize, usize)]) -> &'static [(u16, u16)] {
     let small = |index: usize| u16::try_from(index).expect("fewer than 2^16 states");
     each(of, |&(row, column)| (small(row), small(column)))
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use bg_compiler::pipeline;
 use bg_compiler::source::{part, syntax};
+pub use bg_compiler::tables::Counted;
 use proc_macro2::{Span, TokenStream, TokenTree};
 
 use crate::blueprint::Blueprint;
@@ -65,15 +66,23 @@ impl fmt::Display for Fault {
 /// # Errors
 /// All faults of the first stage that has any.
 pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
-    load_where(text, &|_| true)
+    load_wanted(text, Wanted { scene: &|_| true, counted: Counted::All })
 }
 
-/// The same; of the scenes behind each graph's first model only those that are wanted, by their names, have blueprints,
-/// and are looked at.
+/// What is wanted of a text.
+#[derive(Clone, Copy)]
+pub struct Wanted<'a> {
+    /// Which scenes behind each graph's first model, by their names: others have no blueprints, and are not looked at.
+    pub scene: &'a dyn Fn(&str) -> bool,
+    /// Of which programs descriptions tell the operations. To run a model not all of them have to be made.
+    pub counted: Counted,
+}
+
+/// The same, but what is not wanted is left out.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_where(text: &str, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Graph>, Vec<Fault>> {
+pub fn load_wanted(text: &str, wanted: Wanted<'_>) -> Result<Vec<Graph>, Vec<Fault>> {
     let tokens: TokenStream = text.parse().map_err(|fault: proc_macro2::LexError| {
         let message = "this is no text of the language: a bracket, a quote or a character is out of place".to_owned();
         vec![at(fault.span(), None, message, "close what is open, and quote what is text".to_owned())]
@@ -87,19 +96,21 @@ pub fn load_where(text: &str, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Gr
         let help = "write the part into this file: a text cannot use parts of a Rust crate".to_owned();
         return Err(vec![at(path.name.places()[0], None, message, help)]);
     }
-    let compiled = pipeline::models_where(&source, is_wanted).map_err(of_stage)?;
+    let compiled = pipeline::models_where(&source, wanted.scene).map_err(of_stage)?;
     let mut graphs: Vec<Graph> = Vec::new();
-    for model in &compiled {
-        let (name, blueprint) = (model.source.name.text.clone(), Some(Arc::new(Blueprint::of(model))));
-        match graphs.last_mut().filter(|_| !model.stands_for_graph()) {
+    for model in compiled {
+        let (name, others) = (model.source.name.text.clone(), model.scenes.clone());
+        let (is_literal, stands_for_graph) = (!model.is_scene, model.stands_for_graph());
+        let blueprint = Some(Arc::new(Blueprint::of(model, wanted.counted)));
+        match graphs.last_mut().filter(|_| !stands_for_graph) {
             Some(graph) => {
                 let own = graph.models.iter_mut().find(|own| own.name == name);
                 own.expect("its graph names it").blueprint = blueprint;
             }
             None => {
-                let others = model.scenes.iter().map(|name| Model { name: name.clone(), blueprint: None });
+                let others = others.into_iter().map(|name| Model { name, blueprint: None });
                 let models = [Model { name: name.clone(), blueprint }].into_iter().chain(others).collect();
-                graphs.push(Graph { name, models, is_literal: !model.is_scene });
+                graphs.push(Graph { name, models, is_literal });
             }
         }
     }

@@ -25,14 +25,14 @@ use quote::quote;
 use super::items::{Given, declared};
 use super::{description, documentation, picture};
 use crate::pipeline::Compiled;
-use crate::tables::{self, Tables};
+use crate::tables::{self, Counted, Tables};
 use constants::Constants;
 
 /// The items of one model: parameters, inputs, the type, its functions, its description.
 #[must_use]
 pub fn model(model: &Compiled) -> TokenStream {
     let states = names::of_states(&model.equations);
-    Emission { model, states, shape: Shape::of(model), tables: tables::tables(model) }.items()
+    Emission { model, states, shape: Shape::of(model), tables: tables::tables(model, Counted::All) }.items()
 }
 
 struct Emission<'a> {

@@ -4,6 +4,7 @@
 //! pictures. Method: `bg_expressions::schedule`.
 
 mod changes;
+mod deferred;
 mod programs;
 mod reversed;
 pub mod series;
@@ -14,7 +15,8 @@ pub use bg_expressions::schedule::{
     Assignment, Counts, Operand, Operation, Program, Request, Reverse, Routine, pairs, repetition, reverse, schedule,
 };
 pub use changes::Changes;
-pub use programs::{Pairs, Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
+pub use deferred::{Deferred, deferred};
+pub use programs::{Derivatives, Pairs, Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
 pub use reversed::Reversed;
 pub use series::{SeriesSize, series_size};
 pub use tape::Tape;

@@ -9,7 +9,7 @@ use std::ops::Range;
 use super::pairs::{Paired, pair};
 use super::reversed::{Reversed, reversed};
 use super::tape::{Tape, tape};
-use super::{Counts, Program, Request, Routine, schedule};
+use super::{Counts, Deferred, Program, Request, Routine, deferred, schedule};
 use crate::expr::{Id, Pool};
 use crate::system::equations::Iteration;
 use crate::system::magnitude::magnitudes;
@@ -23,13 +23,10 @@ const INLINED: usize = 400;
 pub struct Programs {
     /// Functions of the running model; they share one constant table.
     pub running: Running,
-    /// The derivatives of the rates, with a constant table of their own.
-    pub jacobian: Program<1>,
-    /// The derivatives among states that are not of second order, with a constant table of their own, where all of them
-    /// are many: what dampers do.
-    pub damping: Option<Program<1>>,
+    /// The derivatives of the rates; most of the time that programs take is for these.
+    pub derivatives: Deferred<Derivatives>,
     /// What there is for states of second order, with a constant table of its own.
-    pub second_order: Option<SecondOrderPrograms>,
+    pub second_order: Option<Deferred<SecondOrderPrograms>>,
     /// What joints hold, with a constant table of its own.
     pub holding: Option<Program<1>>,
     /// What impacts are calculated from, with a constant table of its own.
@@ -49,6 +46,16 @@ pub struct Programs {
     states: usize,
     pairs: OnceCell<Pairs>,
     reversed: OnceCell<Option<Reversed>>,
+}
+
+/// The derivatives of the rates.
+#[derive(Debug)]
+pub struct Derivatives {
+    /// All of them, with a constant table of their own.
+    pub jacobian: Program<1>,
+    /// Those among states that are not of second order, with a constant table of their own, where all of them are many:
+    /// what dampers do.
+    pub damping: Option<Program<1>>,
 }
 
 /// Programs in pairs of operations, where that pays.
@@ -115,13 +122,19 @@ pub struct Starting {
 /// Schedules all functions of a model. The pools gain nodes of parameters and numbers.
 pub fn programs(
     equations: &mut StateEquations,
-    jacobian: &mut Jacobian,
-    second_order: &mut SecondOrder,
+    jacobian: &Jacobian,
+    second_order: &SecondOrder,
     sizes: &mut Sizes,
 ) -> Programs {
     let running = running(equations);
-    let (jacobian, damping) = derivatives(jacobian, &second_order.states);
-    let second_order = (!second_order.states.is_empty()).then(|| of_second_order(second_order, running.is_inlined()));
+    let derivatives = {
+        let (mut jacobian, states) = (jacobian.clone(), second_order.states.clone());
+        deferred(move || derivatives(&mut jacobian, &states))
+    };
+    let second_order = (!second_order.states.is_empty()).then(|| {
+        let (mut second_order, with_forces) = (second_order.clone(), running.is_inlined());
+        deferred(move || of_second_order(&mut second_order, with_forces))
+    });
     let (holding, impacts) = (holding(equations), impacts(equations));
     let measured: Vec<Id> = [sizes.energy].iter().chain(&sizes.curvatures).copied().collect();
     let sizes = alone(&mut sizes.pool, "sizes", &measured);
@@ -133,8 +146,7 @@ pub fn programs(
     let shown = tape(&equations.pool, &equations.solution, &equations.shown.quantities());
     Programs {
         running,
-        jacobian,
-        damping,
+        derivatives,
         second_order,
         holding,
         impacts,
@@ -150,14 +162,14 @@ pub fn programs(
 }
 
 /// The derivatives of the rates and, where these are many, those among states that are not of second order.
-fn derivatives(jacobian: &mut Jacobian, second_order: &Range<usize>) -> (Program<1>, Option<Program<1>>) {
+fn derivatives(jacobian: &mut Jacobian, second_order: &Range<usize>) -> Derivatives {
     let (all, is_bordered) = (jacobian.roots(), !jacobian.unknowns.is_empty());
     let damping: Vec<Id> = jacobian.among_first_order(second_order).map(|entry| entry.value).collect();
     let pool = &mut jacobian.pool;
     let jacobian = alone(pool, "jacobian", &all);
     let has_damping = jacobian.routines[0].is_long() && !is_bordered && damping.len() < all.len();
     let damping = has_damping.then(|| alone(pool, "damping", &damping));
-    (jacobian, damping)
+    Derivatives { jacobian, damping }
 }
 
 /// The operations of the rate function as it would be generated from the equations.
@@ -273,11 +285,17 @@ impl Running {
     }
 }
 
+impl Running {
+    /// All of them with their operations.
+    pub fn costs(&self) -> impl Iterator<Item = (&str, Counts)> {
+        self.routines().into_iter().map(|routine| (routine.name.as_str(), routine.counts))
+    }
+}
+
 impl SecondOrderPrograms {
-    /// The operations of a rate and of one with second derivatives.
+    /// The operations of a rate, which has so many, and of one with second derivatives.
     #[must_use]
-    pub fn operations(&self, running: &Running) -> [usize; 2] {
-        let rate = running.rate.counts.total();
+    pub fn operations(&self, rate: usize) -> [usize; 2] {
         let one_after_the_other = rate + self.second_derivatives.counts.total();
         [rate, self.forces.as_ref().map_or(one_after_the_other, |forces| forces.counts.total())]
     }
@@ -314,9 +332,10 @@ impl Programs {
     /// The functions that are called while the model runs, with their operations.
     pub fn costs(&self) -> impl Iterator<Item = (&str, Counts)> {
         let running = self.running.routines().into_iter();
-        let second_order = self.second_order.iter().flat_map(SecondOrderPrograms::routines);
+        let second_order = self.second_order.iter().flat_map(|second| second.routines());
         let holding = self.holding.iter().chain(&self.impacts).flat_map(|program| &program.routines);
-        let jacobian = [&self.jacobian].into_iter().chain(&self.damping).flat_map(|program| &program.routines);
+        let Derivatives { jacobian, damping } = &*self.derivatives;
+        let jacobian = [jacobian].into_iter().chain(damping).flat_map(|program| &program.routines);
         let routines = running.chain(jacobian).chain(second_order).chain(holding);
         routines.map(|routine| (routine.name.as_str(), routine.counts))
     }

@@ -2,6 +2,7 @@
 //!
 //! In: a [`Compiled`]. Out: a [`Description`] with its tables, in the order of `bg_model::description`.
 
+use super::Counted;
 use super::drawing::{Drawing, drawing};
 use crate::graph::causality::{CausalGraph, End};
 use crate::graph::{self, BondGraph, NodeKind};
@@ -177,7 +178,7 @@ pub struct Bond {
 
 /// The description of a model.
 #[must_use]
-pub fn description(model: &Compiled) -> Description {
+pub fn description(model: &Compiled, counted: Counted) -> Description {
     let (causal, equations) = (&model.derived.causal, &model.equations);
     let graph = &causal.graph;
     let parts = mechanism::parts(&model.source);
@@ -195,8 +196,16 @@ pub fn description(model: &Compiled) -> Description {
         parts: parts.iter().map(|Part { word, name }| Named { word: word.to_string(), name: name.clone() }).collect(),
         bonds: bonds(causal),
         equations: equations.texts.clone(),
-        operations: model.costs().into_iter().map(|(name, counts)| (name.to_owned(), counts)).collect(),
+        operations: operations(model, counted),
         drawing: drawing(model),
+    }
+}
+
+fn operations(model: &Compiled, counted: Counted) -> Vec<(String, Counts)> {
+    let owned = |(name, counts): (&str, Counts)| (name.to_owned(), counts);
+    match counted {
+        Counted::All => model.costs().into_iter().map(owned).collect(),
+        Counted::Made => model.programs.running.costs().map(owned).collect(),
     }
 }
 

@@ -58,10 +58,6 @@ pub struct Tables {
     pub jacobian: Vec<(usize, usize)>,
     /// How many unknowns of loops border it.
     pub unknowns: usize,
-    /// The same of the derivatives among states that are not of second order, where they have a program of their own.
-    pub damping: Option<Vec<(usize, usize)>>,
-    /// How I - c J is factored and solved.
-    pub elimination: EliminationTable,
 }
 
 /// Unknowns of algebraic loops that are solved for together.
@@ -83,12 +79,21 @@ impl Loop {
     }
 }
 
+/// Of which programs the operations are told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Counted {
+    /// Of all.
+    All,
+    /// Of those that are there without being asked for.
+    Made,
+}
+
 /// The tables of a model.
 #[must_use]
-pub fn tables(model: &Compiled) -> Tables {
+pub fn tables(model: &Compiled, counted: Counted) -> Tables {
     let equations = &model.equations;
     Tables {
-        description: description(model),
+        description: description(model, counted),
         start: start(model),
         required: requirements(model, false),
         held: held(model),
@@ -103,8 +108,6 @@ pub fn tables(model: &Compiled) -> Tables {
         loops: loops(&equations.iterations),
         jacobian: model.jacobian.places(),
         unknowns: model.jacobian.unknowns.len(),
-        damping: model.programs.damping.as_ref().map(|_| damping(model)),
-        elimination: elimination(&model.elimination),
     }
 }
 
@@ -124,8 +127,9 @@ fn loops(of: &[Iteration]) -> Vec<Loop> {
     each.collect()
 }
 
-/// Row and column of the derivatives among states that are not of second order.
-fn damping(model: &Compiled) -> Vec<(usize, usize)> {
+/// Row and column of each derivative among states that are not of second order, which may have a program of their own.
+#[must_use]
+pub fn damping(model: &Compiled) -> Vec<(usize, usize)> {
     let entries = model.jacobian.among_first_order(&model.second_order.states);
     entries.map(|entry| (entry.row, entry.column)).collect()
 }

@@ -192,7 +192,10 @@ fn command(program: &Program) -> clap::Command {
 fn every(command: clap::Command, program: &Program, words: &str) -> clap::Command {
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
     let command = match &program.texts.file {
-        Some(file) if names.is_empty() => command.override_usage(format!("{words} {file} [OPTIONS]")),
+        Some(file) if names.is_empty() => {
+            let places: String = command.get_positionals().map(|place| format!(" {place}")).collect();
+            command.override_usage(format!("{words} {file} [OPTIONS]{places}"))
+        }
         _ => command,
     };
     let command = named(command, program);

@@ -86,7 +86,8 @@ impl Emission<'_> {
         let [first, behind] = [states.start, states.end].map(Literal::usize_unsuffixed);
         let indices = states.clone().map(Literal::usize_unsuffixed);
         let (forces, inline) = (self.forces(), self.inline());
-        let operations = programs.operations(&self.model.programs.running).map(Literal::usize_unsuffixed);
+        let operations =
+            programs.operations(self.model.programs.running.rate.counts.total()).map(Literal::usize_unsuffixed);
         Some(quote! {
             impl<S: Scalar> ::bg_model::capability::SecondOrder<S, #n, #g> for Model<S> {
                 #[inline(always)]

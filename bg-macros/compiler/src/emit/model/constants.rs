@@ -8,7 +8,7 @@ use quote::{format_ident, quote};
 use super::super::pairs;
 use super::Emission;
 use crate::program::pairs::Paired;
-use crate::program::{Programs, Routine, SecondOrderPrograms};
+use crate::program::{Derivatives, Programs, Routine};
 
 /// A table of what depends on parameters only.
 struct Table<'a> {
@@ -44,7 +44,8 @@ impl Emission<'_> {
     }
 
     fn constant_tables(&self) -> Vec<Table<'_>> {
-        let Programs { running, jacobian, damping, second_order, holding, impacts, sizes, .. } = &self.model.programs;
+        let Programs { running, derivatives, second_order, holding, impacts, sizes, .. } = &self.model.programs;
+        let Derivatives { jacobian, damping } = &**derivatives;
         let table = |prefix, doc, constants, paired| Table { prefix, doc, constants, paired };
         let of_rates = " What depends on parameters only.";
         let of_jacobian = " What depends on parameters only, of the Jacobian.";
@@ -60,8 +61,8 @@ impl Emission<'_> {
         let of_impacts = " What depends on parameters only, of impacts.";
         tables.extend(impacts.as_ref().map(|program| table("impact_constant", of_impacts, &program.constants, None)));
         tables.push(table("size_constant", " What depends on parameters only, of sizes.", &sizes.constants, None));
-        tables.extend(second_order.as_ref().map(|SecondOrderPrograms { constants, .. }| {
-            table("second_constant", of_forces, constants, self.model.programs.pairs().forces.as_ref())
+        tables.extend(second_order.as_ref().map(|second| {
+            table("second_constant", of_forces, &second.constants, self.model.programs.pairs().forces.as_ref())
         }));
         tables
     }

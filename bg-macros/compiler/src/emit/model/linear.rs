@@ -9,7 +9,7 @@ use super::super::elimination;
 use super::super::routine::parsed;
 use super::capabilities::accessor;
 use super::{Emission, Shape};
-use crate::tables::Tables;
+use crate::tables::{self, Tables};
 
 /// Rows and columns.
 fn listed(places: &[(usize, usize)]) -> TokenStream {
@@ -28,7 +28,7 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let Tables { jacobian, unknowns, .. } = &self.tables;
         let (places, count) = (listed(jacobian), jacobian.len());
-        let [routine] = &self.model.programs.jacobian.routines;
+        let [routine] = &self.model.programs.derivatives.jacobian.routines;
         let (body, results) = self.running(routine, &format_ident!("slope_constants"));
         let (entries, slopes) = results.split_at(count);
         let sparsity = if *unknowns == 0 {
@@ -62,9 +62,9 @@ impl Emission<'_> {
     /// The derivatives among states that are not of second order, where they have a routine of their own.
     fn damping(&self) -> Option<TokenStream> {
         let Shape { n, g, .. } = &self.shape;
-        let [routine] = &self.model.programs.damping.as_ref()?.routines;
+        let [routine] = &self.model.programs.derivatives.damping.as_ref()?.routines;
         let (body, results) = self.running(routine, &format_ident!("damping_constants"));
-        let places = listed(self.tables.damping.as_ref()?);
+        let places = listed(&tables::damping(self.model));
         let count = results.len();
         Some(quote! {
             fn damping_sparsity(&self) -> ::bg_model::linear::Sparsity {

@@ -10,7 +10,7 @@ use quote::{format_ident, quote};
 use super::super::blocks::{Blocks, Group};
 use super::super::routine::{assignments, parsed, parsed_each};
 use super::{Emission, names};
-use crate::program::{Assignment, Operand, Reversed, Routine, SecondOrderPrograms};
+use crate::program::{Assignment, Operand, Reversed, Routine};
 
 impl Emission<'_> {
     /// The functions of the parts of all long routines that [`Self::running`] calls.
@@ -20,11 +20,11 @@ impl Emission<'_> {
         // The equations of iterations are written out where their unknowns are found.
         let functions = running.routines().into_iter().filter(|routine| !std::ptr::eq(*routine, &running.loops));
         let sweeps = programs.reversed().into_iter().flat_map(Reversed::sweeps).map(|sweep| &sweep.routine);
-        let second_order = programs.second_order.iter().flat_map(SecondOrderPrograms::routines);
+        let second_order = programs.second_order.iter().flat_map(|second| second.routines());
         let tables: [(&str, Vec<&Routine>); 7] = [
             ("constants", functions.chain(sweeps).collect()),
-            ("slope_constants", programs.jacobian.routines.iter().collect()),
-            ("damping_constants", programs.damping.iter().flat_map(|program| &program.routines).collect()),
+            ("slope_constants", programs.derivatives.jacobian.routines.iter().collect()),
+            ("damping_constants", programs.derivatives.damping.iter().flat_map(|program| &program.routines).collect()),
             ("second_constants", second_order.collect()),
             ("holding_constants", programs.holding.iter().flat_map(|program| &program.routines).collect()),
             ("size_constants", programs.sizes.routines.iter().collect()),
