@@ -4,8 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use bg_workbench::files::console;
-
-use crate::{faults, file};
+use bond_graph::{faults, file};
 
 /// Says the faults of all files; exit code 1 where there are any, 2 where a file cannot be read.
 pub fn check(files: &[PathBuf], json: bool) -> ExitCode {

@@ -21,6 +21,12 @@ pub fn tell(text: &Text, faults: &[Fault]) {
     eprintln!("error: {}: {count}", text.name);
 }
 
+/// A fault as text: what is wrong, its place, what to do.
+#[must_use]
+pub fn plain(text: &Text, fault: &Fault) -> String {
+    shown(text, fault, &Renderer::plain())
+}
+
 fn shown(text: &Text, fault: &Fault, renderer: &Renderer) -> String {
     let title = Level::ERROR.primary_title(&fault.message);
     let title = match fault.code {
@@ -47,6 +53,10 @@ struct Line<'a> {
 }
 
 /// The faults, each a line of JSON.
+///
+/// # Panics
+/// Never: texts and numbers can be written.
+#[must_use]
 pub fn json(text: &Text, faults: &[Fault]) -> String {
     let line = |Fault { code, message, help, place: [line, column], bytes }: &Fault| {
         let line = Line {
@@ -72,7 +82,7 @@ mod tests {
         let text =
             Text { name: "swing.bond".to_owned(), text: "graph Swing {\n    param mass: kgg = 2;\n}\n".to_owned() };
         let faults = crate::file::graphs(&text, None).expect_err("there is no unit kgg");
-        let told = shown(&text, &faults[0], &Renderer::plain());
+        let told = plain(&text, &faults[0]);
         assert!(told.starts_with("error[BG0"), "{told}");
         assert!(told.contains("--> swing.bond:2:17") && told.contains("^^^") && told.contains("help: "), "{told}");
         let json = json(&text, &faults[..1]);

@@ -23,22 +23,39 @@ const STACK: usize = 1 << 28;
 /// A file that cannot be used.
 #[derive(Debug, Error)]
 pub enum FileFault {
+    /// It is not there, or not to be read.
     #[error("cannot read {}: {source}", path.display())]
-    Unreadable { path: PathBuf, source: std::io::Error },
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// It is larger than any mechanism.
     #[error("{}: larger than {} MB, which is no mechanism", .0.display(), LARGEST >> 20)]
     Large(PathBuf),
+    /// It is no text.
     #[error("{}: no text in UTF-8", .0.display())]
     NoText(PathBuf),
+    /// Its brackets are too deep for a reader of any kind.
     #[error("{}: brackets in brackets, more than {DEEPEST} deep", .0.display())]
     Deep(PathBuf),
+    /// It is no robot that can be taken over.
     #[error("{}: {fault}", path.display())]
-    Import { path: PathBuf, fault: String },
+    Import {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        fault: String,
+    },
 }
 
 /// A text with the name of its file.
 #[derive(Clone, Debug)]
 pub struct Text {
+    /// The name, for messages.
     pub name: String,
+    /// The text.
     pub text: String,
 }
 
@@ -58,12 +75,24 @@ pub fn read(path: &Path) -> Result<Text, FileFault> {
         Some(format) => imported(format, path)?,
         None => plain(path)?,
     };
-    let deepest = text.chars().fold((0_usize, 0), |(depth, deepest), c| match c {
-        '(' | '[' | '{' => (depth + 1, deepest.max(depth + 1)),
-        ')' | ']' | '}' => (depth.saturating_sub(1), deepest),
-        _ => (depth, deepest),
-    });
-    if deepest.1 > DEEPEST { Err(FileFault::Deep(path.to_owned())) } else { Ok(Text { name, text }) }
+    let text = Text { name, text };
+    if text.is_deep() { Err(FileFault::Deep(path.to_owned())) } else { Ok(text) }
+}
+
+impl Text {
+    /// Whether brackets are in brackets more often than a reader follows.
+    #[must_use]
+    pub fn is_deep(&self) -> bool {
+        let mut depth = 0_usize;
+        self.text.chars().any(|c| {
+            match c {
+                '(' | '[' | '{' => depth += 1,
+                ')' | ']' | '}' => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            depth > DEEPEST
+        })
+    }
 }
 
 fn plain(path: &Path) -> Result<String, FileFault> {
@@ -91,6 +120,9 @@ fn imported(format: Format, path: &Path) -> Result<String, FileFault> {
 ///
 /// # Errors
 /// All faults of the first stage that has any.
+///
+/// # Panics
+/// The machine has no memory for a thread.
 pub fn graphs(text: &Text, scene: Option<&str>) -> Result<Vec<Graph>, Vec<Fault>> {
     let counted = if scene.is_some() { Counted::Made } else { Counted::All };
     let (text, scene) = (text.text.clone(), scene.map(str::to_owned));

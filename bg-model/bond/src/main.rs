@@ -5,9 +5,6 @@
 
 mod arguments;
 mod check;
-mod faults;
-mod file;
-mod maker;
 mod new;
 
 use std::process::ExitCode;
@@ -15,6 +12,7 @@ use std::process::ExitCode;
 use arguments::{Asked, Call};
 use bg_workbench::Program;
 use bg_workbench::files::console;
+use bond_graph::{faults, file, maker};
 
 fn main() -> ExitCode {
     let outcome = match arguments::asked(std::env::args_os().skip(1)) {

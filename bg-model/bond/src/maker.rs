@@ -17,7 +17,7 @@ use bg_workbench::machine::Machine;
 use bg_workbench::maker::Maker;
 
 /// A graph of a text.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Loaded {
     graph: Graph,
 }

@@ -1,0 +1,132 @@
+from collections.abc import Iterator, Mapping, Sequence
+from os import PathLike
+from typing import Any, Literal, TypedDict
+
+import numpy as np
+import numpy.typing as npt
+
+__version__: str
+
+class FaultError(ValueError):
+    """Faults of a text, each shown at its place."""
+
+    faults: list[dict[str, Any]]
+    """Each a dict: line, column, code, message, help."""
+
+class RunFailed(ValueError):
+    """A run that stopped before its end."""
+
+    run: Table
+    """What was reached."""
+
+class Table:
+    """Columns of the same length by name."""
+
+    units: dict[str, str]
+    info: dict[str, Any]
+    """How it was made and what it took; `info["inputs"]` has of each input its unit, `is_given`, and `value` or `table`."""
+
+    def __getitem__(self, name: str) -> npt.NDArray[np.float64]: ...
+    def __contains__(self, name: str) -> bool: ...
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def keys(self) -> list[str]: ...
+    def to_pandas(self) -> Any: ...
+    def to_polars(self) -> Any: ...
+
+class Parameter(TypedDict):
+    default: float
+    unit: str
+    lower: float
+    upper: float
+    range: str
+    doc: str
+
+class Counts(TypedDict):
+    runs: int
+    made: int
+    failed: int
+    files: int
+    found: int
+
+class Model:
+    """A model; its functions are those of every mechanism's module."""
+
+    about: str
+    version: str
+
+    def run(
+        self,
+        scene: str | None = None,
+        *,
+        t_end: float | None = None,
+        step: float | None = None,
+        method: str | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        fixed_step: float | None = None,
+        start: Literal["model", "equilibrium"] = "model",
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> Table:
+        """Run the model; parameters are keyword arguments, SI units."""
+
+    def linearize(
+        self,
+        scene: str | None = None,
+        *,
+        at: float | None = None,
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> dict[str, Any]:
+        """Linearise where the run is at ``at`` s, or at the equilibrium near the start."""
+
+    def sensitivity(
+        self,
+        scene: str | None = None,
+        *,
+        by: Sequence[str] | None = None,
+        outputs: Sequence[str] | None = None,
+        t_end: float | None = None,
+        step: float | None = None,
+        method: str | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> Table:
+        """A column ``d(output)/d(parameter)`` over the run for each of the outputs and each parameter in ``by``."""
+
+    def parameters(self, scene: str | None = None) -> dict[str, Parameter]:
+        """The parameters by name; those of a scene, or all."""
+
+    def scenes(self) -> dict[str, str]:
+        """The scenes by name, with what they are."""
+
+    def outputs(self, scene: str | None = None) -> dict[str, str]:
+        """The outputs of a scene by name, with their units."""
+
+    def sweep(
+        self,
+        plan: str | PathLike[str] | Mapping[str, Any],
+        out: str | PathLike[str],
+        *,
+        shard: tuple[int, int] = (1, 1),
+        threads: int = 0,
+    ) -> Counts:
+        """Make the runs of a plan into the folder ``out``; what is there is not made again."""
+
+    def sweep_shards(self, plan: str | PathLike[str] | Mapping[str, Any]) -> int:
+        """How many shards, each some hundred runs, the sweep of a plan has."""
+
+    def read_sweep(self, folder: str | PathLike[str], *, trajectories: bool = False) -> Table:
+        """The rows of a sweep's folder: one for each run, or with ``trajectories`` for each sample."""
+
+def load(path: str | PathLike[str], *, graph: str | None = None) -> Model:
+    """The model of a file: a text with graphs, a Rust file with calls of ``bond_graph!``, a robot in URDF or MJCF."""
+
+def compile(text: str, *, graph: str | None = None) -> Model:
+    """The model of a text."""

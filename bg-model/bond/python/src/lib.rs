@@ -1,0 +1,81 @@
+//! Mechanisms as text in Python, without a toolchain.
+//!
+//! In: text in the language of `bond_graph!`, or a file that `bond` takes. Out: a model with the functions of `bg-python`;
+//! or `FaultError`, which says all faults at their places.
+
+use std::path::PathBuf;
+
+use bg_loaded::Fault;
+use bg_python::model::{Model, RunFailed};
+use bg_python::table::Table;
+use bg_workbench::Program;
+use bond_graph::file::{self, Text};
+use bond_graph::{faults, maker};
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+pyo3::create_exception!(
+    _bond_graph,
+    FaultError,
+    PyValueError,
+    "Faults of a text; `faults` has each as a dict: line, column, code, message, help."
+);
+
+/// The model of a file: a text with graphs, a Rust file with calls of `bond_graph!`, a robot in URDF or MJCF.
+#[pyfunction]
+#[pyo3(signature = (path, *, graph=None))]
+fn load(py: Python<'_>, path: PathBuf, graph: Option<&str>) -> PyResult<Model> {
+    let text = py.detach(|| file::read(&path)).map_err(|fault| match fault {
+        file::FileFault::Unreadable { .. } => PyOSError::new_err(fault.to_string()),
+        fault => PyValueError::new_err(fault.to_string()),
+    })?;
+    model(py, text, graph)
+}
+
+/// The model of a text.
+#[pyfunction]
+#[pyo3(signature = (text, *, graph=None))]
+fn compile(py: Python<'_>, text: String, graph: Option<&str>) -> PyResult<Model> {
+    let text = Text { name: "<text>".to_owned(), text };
+    if text.is_deep() {
+        return Err(PyValueError::new_err("brackets in brackets, deeper than any mechanism has them"));
+    }
+    model(py, text, graph)
+}
+
+fn model(py: Python<'_>, text: Text, graph: Option<&str>) -> PyResult<Model> {
+    let graphs = py.detach(|| file::graphs(&text, None)).or_else(|faults| Err(fault_error(py, &text, &faults)?))?;
+    let loaded = maker::Loaded::of(graphs, graph).map_err(PyValueError::new_err)?;
+    Ok(Model::new(move || Program::with(loaded.clone())))
+}
+
+/// All faults of a text as Python raises them.
+fn fault_error(py: Python<'_>, text: &Text, all: &[Fault]) -> PyResult<PyErr> {
+    let told: Vec<String> = all.iter().map(|fault| faults::plain(text, fault)).collect();
+    let raised = FaultError::new_err(format!("\n{}", told.join("\n\n")));
+    let listed = PyList::empty(py);
+    for Fault { code, message, help, place: [line, column], .. } in all {
+        let one = PyDict::new(py);
+        one.set_item("line", line)?;
+        one.set_item("column", column)?;
+        one.set_item("code", code)?;
+        one.set_item("message", message)?;
+        one.set_item("help", help)?;
+        listed.append(one)?;
+    }
+    raised.value(py).setattr("faults", listed)?;
+    Ok(raised)
+}
+
+/// The module.
+#[pymodule]
+fn _bond_graph(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(load, module)?)?;
+    module.add_function(wrap_pyfunction!(compile, module)?)?;
+    module.add_class::<Model>()?;
+    module.add_class::<Table>()?;
+    module.add("FaultError", module.py().get_type::<FaultError>())?;
+    module.add("RunFailed", module.py().get_type::<RunFailed>())?;
+    module.add("__version__", env!("CARGO_PKG_VERSION"))
+}
