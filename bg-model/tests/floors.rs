@@ -24,7 +24,7 @@ const FLOORS: [&[&str]; 17] = [
     &["model::system"],
     &["model::dynamics", "model::vectorised"],
     &["model::reactions", "model::mechanism"],
-    &["model::standing"],
+    &["model::standing", "model::start"],
     &["solve::statistics"],
     &["solve::integrator", "solve::finish"],
     &["solve::stepper", "solve::failure", "solve::fixed_step"],

@@ -345,7 +345,7 @@ pub(super) fn first_step(flow: &Flow<'_>, start: &Point, scale: &Scale, order: f
         time * libm::pow(0.01 / (steepest * time), 1.0 / order)
     };
     let step = step.min(100.0 * guess).min(longest);
-    if step > 0.0 { step } else { AT_REST * longest }
+    if step > 0.0 { step } else { (AT_REST * longest).max(f64::MIN_POSITIVE).min(longest) }
 }
 
 #[cfg(test)]
