@@ -19,7 +19,7 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
                 continue;
             }
         };
-        let told = match file::graphs(&text) {
+        match file::graphs(&text) {
             Ok(graphs) if json => drop(graphs),
             Ok(graphs) => {
                 let names: Vec<String> = graphs
@@ -35,8 +35,7 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
                 code = code.max(1);
                 if json { say(&faults::json(&text, &faults), &mut code) } else { faults::tell(&text, &faults) }
             }
-        };
-        told
+        }
     }
     ExitCode::from(code)
 }

@@ -4,15 +4,16 @@
 use bg_model::bond_graph;
 use bg_model::capability::Storages;
 use bg_model::description::StateKind;
+use bg_model::dynamics::Dynamics;
 use bg_model::extended::{self, Accuracy};
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::{LiftedVisitor, Mechanism, ModelVisitor};
+use bg_model::mechanism::{Liftable, Mechanism, ModelVisitor};
 use bg_model::nalgebra::SVector;
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::parameters::Parameters;
 use bg_model::run::{Request, Simulation, Trajectory};
 use bg_model::scalar::{DoubleDouble, Scalar};
 use bg_model::simulation::{Part, Samples, Span};
-use bg_model::system::{Model, System};
+use bg_model::system::Model;
 
 use crate::random::random_numbers;
 
@@ -63,25 +64,29 @@ bond_graph! {
 }
 
 /// A system whose states are counted in units of their own, so that each is of the order 1.
-struct Counted<'a, Sys, const N: usize> {
-    system: &'a Sys,
-    units: SVector<f64, N>,
+struct Counted<'a> {
+    system: &'a dyn Dynamics<DoubleDouble>,
+    units: &'a [f64],
 }
 
-impl<Sys: System<DoubleDouble, N, G>, const N: usize, const G: usize> System<DoubleDouble, N, G>
-    for Counted<'_, Sys, N>
-{
-    fn rate(
-        &self,
-        t: DoubleDouble,
-        x: &SVector<DoubleDouble, N>,
-        negative: &[bool; G],
-        dx: &mut SVector<DoubleDouble, N>,
-    ) {
-        let x = x.zip_map(&self.units, DoubleDouble::times);
-        self.system.rate(t, &x, negative, dx);
-        *dx = dx.zip_map(&self.units, |rate, unit| rate.times(1.0 / unit));
+impl Dynamics<DoubleDouble> for Counted<'_> {
+    fn states(&self) -> usize {
+        self.system.states()
     }
+
+    fn switches(&self) -> usize {
+        self.system.switches()
+    }
+
+    fn rate(&self, t: DoubleDouble, x: &[DoubleDouble], negative: &[bool], dx: &mut [DoubleDouble]) {
+        self.system.rate(t, &in_units(x, self.units), negative, dx);
+        dx.iter_mut().zip(self.units).for_each(|(rate, unit)| *rate = rate.times(1.0 / unit));
+    }
+}
+
+/// Numbers that are counted in these units.
+fn in_units(x: &[DoubleDouble], units: &[f64]) -> Vec<DoubleDouble> {
+    x.iter().zip(units).map(|(x, &unit)| x.times(unit)).collect()
 }
 
 /// How large each state of a run counts, in its unit: its largest value, or a billionth of where it counts beside the
@@ -110,40 +115,20 @@ impl ModelVisitor<f64> for Counting<'_> {
     }
 }
 
-/// The states at some instants (s) in double-double arithmetic, counted in these units: powers of two.
-struct Exact<'a> {
-    values: &'a [f64],
-    units: &'a [f64],
-    instants: &'a [f64],
-}
-
-impl LiftedVisitor<DoubleDouble, DoubleDouble> for Exact<'_> {
-    type Output = Vec<Vec<f64>>;
-
-    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
-        self,
-        _: &Mo,
-        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
-        lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
-        _: impl Fn(&[&Li], fn(&[DoubleDouble]) -> DoubleDouble) -> Ot,
-    ) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M>,
-        Li: Model<DoubleDouble, N, G, M>,
-        Ot: Model<DoubleDouble, N, G, M>,
-    {
-        let values: Vec<DoubleDouble> = self.values.iter().copied().map(DoubleDouble::from_f64).collect();
-        let (system, units) = (lifted(&values).expect("in range"), SVector::from_column_slice(self.units));
-        let start = system.start().expect("a start").zip_map(&units, |x, unit| x.times(1.0 / unit));
-        let span = Span { t0: 0.0, t_end: *self.instants.last().expect("an instant") };
-        let accuracy = Accuracy { columns: 10, tolerance: 1e-15 };
-        let mut states = Vec::new();
-        extended::integrate(&Counted { system: &system, units }, &start, span, accuracy, self.instants, |_, x, _| {
-            states.push(x.zip_map(&units, DoubleDouble::times).map(DoubleDouble::to_f64).as_slice().to_vec());
-        })
-        .expect("a run");
-        states
-    }
+/// The states of a model at some instants (s) in double-double arithmetic, counted in these units: powers of two.
+fn exact(model: &dyn Liftable<DoubleDouble>, units: &[f64], instants: &[f64]) -> Vec<Vec<f64>> {
+    let values: Vec<DoubleDouble> = model.values().into_iter().map(DoubleDouble::from_f64).collect();
+    let system = model.lifted(&values).expect("in range");
+    let start = system.start().expect("a start");
+    let start: Vec<DoubleDouble> = start.iter().zip(units).map(|(x, unit)| x.times(1.0 / unit)).collect();
+    let span = Span { t0: 0.0, t_end: *instants.last().expect("an instant") };
+    let accuracy = Accuracy { columns: 10, tolerance: 1e-15 };
+    let mut states = Vec::new();
+    extended::integrate(&Counted { system: &*system, units }, &start, span, accuracy, instants, &mut |_, x, _| {
+        states.push(in_units(x, units).into_iter().map(DoubleDouble::to_f64).collect());
+    })
+    .expect("a run");
+    states
 }
 
 /// The largest error of a run up to `t_end` (s) over its tolerance, at the ends of some of its steps: of any state,
@@ -157,8 +142,7 @@ fn error<Me: Mechanism>(model: &Me, t_end: f64, method: Integrator, rtol: f64) -
     let instants: Vec<f64> = rows.iter().map(|&row| run.times[row]).collect();
     let sizes = model.visit(Counting(&run));
     let units: Vec<f64> = sizes.iter().map(|size| size.log2().round().exp2()).collect();
-    let exact = Exact { values: &model.parameters().values(), units: &units, instants: &instants };
-    let exact = model.visit_lifted(exact);
+    let exact = exact(model, &units, &instants);
     let columns = run.recording.columns.iter().zip(&sizes).enumerate();
     let errors = columns.flat_map(|(state, (column, size))| {
         let both = rows.iter().zip(&exact);
