@@ -38,14 +38,14 @@ fn told(found: &Sensitivities) -> String {
     text.replace("-0.0,", "0.0,").replace("-0.0]", "0.0]")
 }
 
-fn same_studies<Me: Mechanism>(call: &str) {
+fn same_studies<Me: Mechanism>(call: &str, t_end: f64) {
     let (compiled, loaded) = both::<Me>(call);
     let (compiled, loaded): (&dyn Followed, &dyn Followed) = (&compiled, &loaded);
     let mut by = Direction::parameters::<Me>();
     by.extend((0..Me::describe().states.len()).map(Direction::Start));
     // More than fit into one vector, and as few as take the narrow ones; by the method of the slopes and by another.
     for (method, few) in [(Integrator::Dop853, &by[..]), (Integrator::Dop853, &by[..1]), (Integrator::default(), &by)] {
-        let request = Request { method, t_end: 2.0, samples: Samples::Every(0.5), ..Request::default() };
+        let request = Request { method, t_end, samples: Samples::Every(0.5 * t_end), ..Request::default() };
         let [ours, theirs] = [loaded, compiled].map(|of| told(&sensitivities(of, &request, few).expect("slopes")));
         assert_eq!(ours, theirs, "{}: {method:?}", Me::describe().name);
         assert!(ours.contains("e-") || ours.contains("0.0"), "{ours}");
@@ -54,9 +54,9 @@ fn same_studies<Me: Mechanism>(call: &str) {
 
 #[test]
 fn derivatives_of_runs_are_those_of_the_compiled_model() {
-    same_studies::<DoublePendulum>("double_pendulum.rs");
-    same_studies::<MassSpringDamper>("mass_spring_damper.rs");
-    same_studies::<StickSlip>("stick_slip.rs");
+    same_studies::<DoublePendulum>("double_pendulum.rs", 0.005);
+    same_studies::<MassSpringDamper>("mass_spring_damper.rs", 0.2);
+    same_studies::<StickSlip>("stick_slip.rs", 2.0);
 }
 
 #[test]
