@@ -1,6 +1,7 @@
 //! Models of text, interpreted, beside the same models compiled by rustc: tables, functions and runs are equal to the
 //! bit.
 
+mod studies;
 mod texts;
 
 use std::rc::Rc;

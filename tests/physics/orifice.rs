@@ -1,3 +1,4 @@
+use bg_model::dynamics::{Machine, Over};
 use bg_model::extended::{self, Accuracy};
 use bg_model::integrator::{Integrator, Tolerances};
 use bg_model::nalgebra::SVector;
@@ -52,12 +53,13 @@ fn it_starts_at_rest_and_comes_to_the_flow_that_the_tank_takes() {
 fn all_methods_leave_the_rest_alike() {
     let p = Parameters::default();
     let exact: Orifice<DoubleDouble> = Orifice::in_scalar(p.clone()).unwrap();
+    let exact = Over::<_, { Orifice::STATES }, { Orifice::SWITCHES }, { Orifice::OUTPUTS }>(&exact);
     let accuracy = Accuracy { columns: 8, tolerance: 1e-28 };
     let start = exact.start().unwrap();
     let span = Span { t0: 0.0, t_end: 2e-3 };
-    let finish = extended::integrate(&exact, &start, span, accuracy, &[], |_, _, _| {}).unwrap();
+    let finish = extended::integrate(&exact, &start, span, accuracy, &[], &mut |_, _, _| {}).unwrap();
     let model = Orifice::new(p).unwrap();
-    let reference = outputs(&model, 2e-3, &finish.x.map(|value| value.to_f64()));
+    let reference = outputs(&model, 2e-3, &SVector::from_fn(|state, _| finish.x[state].to_f64()));
     assert!((50.0..200.0).contains(&reference[0]), "in the laminar range: {reference}");
     for integrator in METHODS {
         let end = run(&model, integrator, 2e-3);

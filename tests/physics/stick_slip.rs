@@ -1,9 +1,9 @@
+use bg_model::dynamics::{Machine, Over};
 use bg_model::extended::{self, Accuracy};
 use bg_model::integrator::Integrator;
 use bg_model::run::{Simulation, State};
 use bg_model::scalar::{DoubleDouble, Scalar};
 use bg_model::simulation::Span;
-use bg_model::system::Model;
 use bond_graph_tests::models::brakes::{Carriage, CarriageParameters};
 use bond_graph_tests::models::stick_slip::{StickSlip, StickSlipParameters as Parameters};
 
@@ -48,9 +48,10 @@ fn it_sticks_and_slips_with_the_period_of_its_closed_form() {
 fn a_reference_solution_goes_over_the_same_events() {
     let p = Parameters::default();
     let exact: StickSlip<DoubleDouble> = StickSlip::in_scalar(p.clone()).unwrap();
+    let exact = Over::<_, { StickSlip::STATES }, { StickSlip::SWITCHES }, { StickSlip::OUTPUTS }>(&exact);
     let accuracy = Accuracy { columns: 8, tolerance: 1e-26 };
     let span = Span { t0: 0.0, t_end: 5.0 };
-    let finish = extended::integrate(&exact, &exact.start().unwrap(), span, accuracy, &[], |_, _, _| {}).unwrap();
+    let finish = extended::integrate(&exact, &exact.start().unwrap(), span, accuracy, &[], &mut |_, _, _| {}).unwrap();
     let expected = events(&p, 5.0);
     assert_eq!(finish.events.len(), expected.len());
     for (event, expected) in finish.events.iter().zip(&expected) {

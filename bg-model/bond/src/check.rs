@@ -18,7 +18,7 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
                 continue;
             }
         };
-        let told = match file::graphs(&text, None) {
+        match file::graphs(&text, None) {
             Ok(graphs) if json => drop(graphs),
             Ok(graphs) => {
                 let names: Vec<String> = graphs
@@ -34,8 +34,7 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
                 code = code.max(1);
                 if json { say(&faults::json(&text, &faults), &mut code) } else { faults::tell(&text, &faults) }
             }
-        };
-        told
+        }
     }
     ExitCode::from(code)
 }

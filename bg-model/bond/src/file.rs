@@ -111,7 +111,7 @@ fn imported(format: Format, path: &Path) -> Result<String, FileFault> {
     let options = Options { contacts: false, ..Options::default() };
     let fault = |fault: bg_import::ImportError| FileFault::Import { path: path.to_owned(), fault: fault.to_string() };
     let imported = import_file(format, path, options).map_err(fault)?;
-    imported.notes.iter().for_each(|note| console::note(note));
+    imported.notes.iter().for_each(console::note);
     Ok(imported.text)
 }
 

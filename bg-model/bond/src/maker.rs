@@ -5,16 +5,20 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
+use bg_analysis::identify::{Data, Identified, IdentifyError, Variable, identify};
 use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium, linearise_at};
 use bg_loaded::{Blueprint, Graph, Interpreted, Model};
 use bg_model::description::Description;
 use bg_model::dynamics;
+use bg_model::extended::Accuracy;
 use bg_model::input::Input;
 use bg_model::mechanism::Differentiable;
 use bg_model::parameters::ParameterError;
-use bg_model::run::State;
+use bg_model::run::{Request, State};
+use bg_model::sensitivity::{Sensitivities, SensitivityError, directions, sensitivities};
 use bg_workbench::machine::Machine;
 use bg_workbench::maker::Maker;
+use bg_workbench::precision::reference::{ReferenceError, Solution, solve};
 
 /// A graph of a text.
 #[derive(Clone, Debug)]
@@ -85,5 +89,24 @@ impl Machine for Made {
 
     fn linearised(&self, state: &State) -> Option<Result<StateSpace, LinearError>> {
         Some(linearise_at(&self.model, state))
+    }
+
+    fn sensitivities(&self, request: &Request, by: &[&str]) -> Option<Result<Sensitivities, SensitivityError>> {
+        let directions = directions(self.model.description(), by);
+        Some(directions.map_err(Into::into).and_then(|by| sensitivities(&self.model, request, &by)))
+    }
+
+    fn identified(
+        &self,
+        request: &Request,
+        data: &Data,
+        variables: &[Variable],
+        told: &mut dyn FnMut(&[f64], f64),
+    ) -> Option<Result<Identified, IdentifyError>> {
+        Some(identify(&self.model, request, data, variables, told))
+    }
+
+    fn solution(&self, accuracy: Accuracy, instants: &[f64]) -> Option<Result<Solution, ReferenceError>> {
+        Some(solve(&self.model, accuracy, instants, &|_| true))
     }
 }

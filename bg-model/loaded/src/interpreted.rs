@@ -94,7 +94,7 @@ impl<S: Scalar> Interpreted<S> {
     /// # Panics
     /// There is no value for a parameter.
     pub fn new(blueprint: &Arc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> Result<Self, ParameterError> {
-        Self::lifted(blueprint, parameters.iter().copied().map(S::from_f64).collect(), inputs)
+        Self::of_values(blueprint, parameters.iter().copied().map(S::from_f64).collect(), inputs)
     }
 
     /// The same with values in the scalar, such as dual numbers.
@@ -104,7 +104,7 @@ impl<S: Scalar> Interpreted<S> {
     ///
     /// # Panics
     /// As [`Interpreted::new`].
-    pub fn lifted(blueprint: &Arc<Blueprint>, values: Vec<S>, inputs: &[Input]) -> Result<Self, ParameterError> {
+    pub fn of_values(blueprint: &Arc<Blueprint>, values: Vec<S>, inputs: &[Input]) -> Result<Self, ParameterError> {
         let parameters: Vec<f64> = values.iter().copied().map(S::to_f64).collect();
         let Description { parameters: table, inputs: named, .. } = blueprint.description();
         table.iter().zip(&parameters).try_for_each(|(info, &value)| info.check(value))?;

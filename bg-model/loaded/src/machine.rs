@@ -1,6 +1,7 @@
 //! An interpreted model as a run asks for it.
 //!
-//! In: an [`Interpreted`] model. Out: [`Dynamics`], [`Machine`] and [`Starting`] for it, in any scalar.
+//! In: an [`Interpreted`] model. Out: [`Dynamics`], [`Machine`] and [`Starting`] for it, in any scalar; what studies
+//! make of it anew.
 
 use std::ops::Range;
 use std::rc::Rc;
@@ -9,16 +10,16 @@ use bg_model::assembly::AssemblyError;
 use bg_model::capability::{Operations, SeriesSize};
 use bg_model::description::{Description, StateInfo};
 use bg_model::drawing;
-use bg_model::dynamics::{Dynamics, Machine};
+use bg_model::dynamics::{Dynamics, Machine, Rates};
 use bg_model::failure::Origin;
 use bg_model::holding::{Held, Redundancy, Stops};
 use bg_model::input::{Input, next_break};
 use bg_model::linear::Sparsity;
 use bg_model::linear::table::{eliminate, substitute};
-use bg_model::mechanism::Differentiable;
+use bg_model::mechanism::{Differentiable, Joinable, Liftable, SideBySide};
 use bg_model::nalgebra::Complex;
 use bg_model::parameters::ParameterError;
-use bg_model::scalar::{Gradient, Scalar};
+use bg_model::scalar::{Gradient, GradientIn, Scalar, Slopes};
 use bg_model::start::{StartRoutine, StartTable, Starting, redundant, start};
 use bg_model::system::Powers;
 
@@ -322,6 +323,10 @@ impl Differentiable for Interpreted {
         self.blueprint.statics.description
     }
 
+    fn values(&self) -> Vec<f64> {
+        self.parameters.clone()
+    }
+
     fn inputs(&self) -> Vec<Input> {
         self.inputs.clone()
     }
@@ -330,7 +335,41 @@ impl Differentiable for Interpreted {
         Rc::new(self.in_scalar::<f64>())
     }
 
+    fn tuned(&self, values: &[f64]) -> Result<Rc<dyn Machine>, ParameterError> {
+        self.lifted(values)
+    }
+
     fn sloped(&self, inputs: &[Input]) -> Result<Rc<dyn Machine<Gradient>>, ParameterError> {
         Ok(Rc::new(Interpreted::<Gradient>::new(&self.blueprint, &self.parameters, inputs)?))
+    }
+}
+
+impl<S: Scalar> Liftable<S> for Interpreted {
+    fn lifted(&self, values: &[S]) -> Result<Rc<dyn Machine<S>>, ParameterError> {
+        Ok(Rc::new(Interpreted::of_values(&self.blueprint, values.to_vec(), &self.inputs)?))
+    }
+}
+
+impl<V: Slopes> Joinable<V> for Interpreted {
+    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Result<SideBySide<V>, ParameterError> {
+        let joined = |place: usize| {
+            let of_each: Vec<Gradient> = values.iter().map(|values| values[place]).collect();
+            GradientIn::joined(&of_each)
+        };
+        let all = (0..self.parameters.len()).map(joined).collect();
+        Ok(SideBySide {
+            each: values.iter().map(|values| self.lifted(values)).collect::<Result<_, _>>()?,
+            all: Box::new(Interpreted::<GradientIn<V>>::of_values(&self.blueprint, all, &self.inputs)?),
+        })
+    }
+}
+
+impl<V: Slopes> Rates<V> for Interpreted<GradientIn<V>> {
+    fn rate(&self, t: f64, x: &[GradientIn<V>], negative: &[bool], dx: &mut [GradientIn<V>]) {
+        Dynamics::rate(self, GradientIn::from_f64(t), x, negative, dx);
+    }
+
+    fn project(&self, t: f64, negative: &[bool], x: &mut [GradientIn<V>]) {
+        Dynamics::project(self, GradientIn::from_f64(t), negative, x);
     }
 }

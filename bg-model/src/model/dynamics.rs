@@ -9,7 +9,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::{Deref, Range};
 
-use nalgebra::{Complex, SVector};
+use nalgebra::{ArrayStorage, Complex, SVector};
 use pulp::NullaryFnOnce;
 
 use crate::model::assembly::AssemblyError;
@@ -18,8 +18,9 @@ use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Field, Sparsity, differences};
 use crate::model::origin::Origin;
-use crate::model::scalar::Scalar;
 use crate::model::scalar::machine::Arch;
+use crate::model::scalar::slopes::Slopes;
+use crate::model::scalar::{GradientIn, Scalar};
 use crate::model::system::{Model, Powers, System, decide_by_sign, switches, values, values_mut};
 
 /// A system of ordinary differential equations: [`System`], over slices. States `x` and all that there is one of for
@@ -216,6 +217,19 @@ pub trait Machine<S: Scalar = f64>: Dynamics<S> {
     fn powers(&self, t: S, x: &[S], negative: &[S::Switch]) -> Powers<S>;
 }
 
+/// A system as a step of a state with slopes in the vectors `V` asks for it, over slices: each of its functions is
+/// compiled for these vectors.
+///
+/// # Panics
+/// As [`Dynamics`].
+pub trait Rates<V> {
+    /// [`System::rate`] at time `t` (s).
+    fn rate(&self, t: f64, x: &[GradientIn<V>], negative: &[bool], dx: &mut [GradientIn<V>]);
+
+    /// [`System::project`] at time `t` (s).
+    fn project(&self, t: f64, negative: &[bool], x: &mut [GradientIn<V>]);
+}
+
 /// The branches of the switches of a system at time `t` (s) and state `x`.
 #[must_use]
 pub fn branches<S: Scalar>(system: &dyn Dynamics<S>, t: f64, x: &[S]) -> Vec<bool> {
@@ -330,6 +344,18 @@ where
         x.copy_from_slice(state.as_slice());
     }
 
+    fn next_break(&self, t: f64) -> f64 {
+        self.0.next_break(t)
+    }
+
+    fn state_name(&self, index: usize) -> &'static str {
+        self.0.state_name(index)
+    }
+
+    fn switch_name(&self, index: usize) -> Option<&'static str> {
+        self.0.switch_name(index)
+    }
+
     fn held(&self) -> Option<Held> {
         self.0.joints().map(Joints::held)
     }
@@ -341,6 +367,20 @@ where
     fn hold(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
         if let Some(joints) = self.0.joints() {
             joints.hold(t, &SVector::from_column_slice(x), &each(negative), entries);
+        }
+    }
+
+    fn stops(&self) -> Option<Stops> {
+        self.0.impacts().map(Impacts::stops)
+    }
+
+    fn kept_of_stops(&self) -> &[f64] {
+        self.0.impacts().map_or(&[], Impacts::kept)
+    }
+
+    fn impact(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
+        if let Some(impacts) = self.0.impacts() {
+            impacts.impact(t, &SVector::from_column_slice(x), &each(negative), entries);
         }
     }
 
@@ -402,6 +442,20 @@ where
     }
 }
 
+/// A system whose numbers are in its type, as steps with slopes ask for it.
+#[derive(Clone, Copy, Debug)]
+pub struct InVectors<Sys, const N: usize, const G: usize>(pub Sys);
+
+impl<V: Slopes, Sys: System<GradientIn<V>, N, G>, const N: usize, const G: usize> Rates<V> for InVectors<Sys, N, G> {
+    fn rate(&self, t: f64, x: &[GradientIn<V>], negative: &[bool], dx: &mut [GradientIn<V>]) {
+        V::vectorized(SlopedRate::<V, Sys, N, G> { system: &self.0, t, x, negative: switches(negative), dx });
+    }
+
+    fn project(&self, t: f64, negative: &[bool], x: &mut [GradientIn<V>]) {
+        V::vectorized(SlopedProjection::<V, Sys, N, G> { system: &self.0, t, negative: switches(negative), x });
+    }
+}
+
 /// The branches in an array.
 fn each<T: Copy, const G: usize>(negative: &[T]) -> [T; G] {
     negative.try_into().expect("there is a branch for each switch")
@@ -424,6 +478,66 @@ impl<Sys: System<f64, N, G>, const N: usize, const G: usize> NullaryFnOnce for R
     fn call(self) {
         self.system.inlined_rate(self.t, self.x, self.negative, self.dx);
     }
+}
+
+struct SlopedRate<'a, V, Sys, const N: usize, const G: usize> {
+    system: &'a Sys,
+    t: f64,
+    x: &'a [GradientIn<V>],
+    negative: &'a [bool; G],
+    dx: &'a mut [GradientIn<V>],
+}
+
+impl<V, Sys, const N: usize, const G: usize> NullaryFnOnce for SlopedRate<'_, V, Sys, N, G>
+where
+    V: Slopes,
+    Sys: System<GradientIn<V>, N, G>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (t, x) = (GradientIn::from_f64(self.t), state(self.x));
+        let mut rates = x;
+        if V::MUST_BE_INLINED {
+            self.system.always_inlined_rate(t, &x, self.negative, &mut rates);
+        } else {
+            self.system.rate(t, &x, self.negative, &mut rates);
+        }
+        self.dx.copy_from_slice(&rates.data.0[0]);
+    }
+}
+
+struct SlopedProjection<'a, V, Sys, const N: usize, const G: usize> {
+    system: &'a Sys,
+    t: f64,
+    negative: &'a [bool; G],
+    x: &'a mut [GradientIn<V>],
+}
+
+impl<V, Sys, const N: usize, const G: usize> NullaryFnOnce for SlopedProjection<'_, V, Sys, N, G>
+where
+    V: Slopes,
+    Sys: System<GradientIn<V>, N, G>,
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let (t, mut x) = (GradientIn::from_f64(self.t), state(self.x));
+        if V::MUST_BE_INLINED {
+            self.system.inlined_project(t, self.negative, &mut x);
+        } else {
+            self.system.project(t, self.negative, &mut x);
+        }
+        self.x.copy_from_slice(&x.data.0[0]);
+    }
+}
+
+/// The numbers of all states as a system takes them; a copy, which is none where it is inlined.
+#[inline(always)]
+fn state<S: Copy, const N: usize>(of: &[S]) -> SVector<S, N> {
+    SVector::from_array_storage(ArrayStorage([*of.first_chunk().expect("there is a number for each state")]))
 }
 
 struct Eliminate<'a, E, F, const N: usize> {

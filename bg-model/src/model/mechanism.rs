@@ -3,14 +3,22 @@
 //! In: parameters and inputs by name. Out: the model, handed with its numbers to a visitor. What is generic over a
 //! [`Mechanism`] needs no const generics, and only what a visitor calls is compiled.
 
+use alloc::boxed::Box;
 use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use crate::model::description::Description;
-use crate::model::dynamics::{Machine, Over, shared};
+use crate::model::dynamics::{InVectors, Machine, Over, Rates, shared};
 use crate::model::input::Input;
 use crate::model::parameters::{ParameterError, Parameters};
-use crate::model::scalar::{Gradient, Scalar};
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+use crate::model::scalar::lanes::{Avx2, Avx512};
+#[cfg(all(feature = "std", not(target_arch = "x86_64")))]
+use crate::model::scalar::slopes::Eight;
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+use crate::model::scalar::slopes::Everywhere;
+use crate::model::scalar::slopes::Slopes;
+use crate::model::scalar::{Gradient, GradientIn, Scalar};
 use crate::model::system::Model;
 
 /// A model that `bond_graph!` generated: a graph or one of its scenes.
@@ -46,16 +54,28 @@ pub trait Mechanism: Clone {
     fn visit_lifted<S: Scalar, T: Scalar, V: LiftedVisitor<S, T>>(&self, visitor: V) -> V::Output;
 }
 
-/// A model as studies of it ask for it: in doubles, and made anew in numbers with slopes.
+/// A model as studies of it ask for it: in doubles, of other values, and made anew in numbers with slopes.
 pub trait Differentiable {
     /// What it consists of.
     fn description(&self) -> &'static Description;
 
-    /// Its inputs, in the order of its description.
+    /// The values of its parameters, in the order of its description.
+    fn values(&self) -> Vec<f64>;
+
+    /// Its inputs, likewise.
     fn inputs(&self) -> Vec<Input>;
 
     /// It in doubles.
     fn machine(&self) -> Rc<dyn Machine>;
+
+    /// The same with these values of its parameters.
+    ///
+    /// # Errors
+    /// A value outside its range, or one that cannot be.
+    ///
+    /// # Panics
+    /// There is no value for a parameter.
+    fn tuned(&self, values: &[f64]) -> Result<Rc<dyn Machine>, ParameterError>;
 
     /// The same with these inputs, in numbers with slopes.
     ///
@@ -64,9 +84,25 @@ pub trait Differentiable {
     fn sloped(&self, inputs: &[Input]) -> Result<Rc<dyn Machine<Gradient>>, ParameterError>;
 }
 
+/// A model that can be made in numbers `S`.
+pub trait Liftable<S: Scalar>: Differentiable {
+    /// It in these numbers, with these values of its parameters.
+    ///
+    /// # Errors
+    /// As [`Differentiable::tuned`].
+    ///
+    /// # Panics
+    /// As [`Differentiable::tuned`].
+    fn lifted(&self, values: &[S]) -> Result<Rc<dyn Machine<S>>, ParameterError>;
+}
+
 impl<Me: Mechanism> Differentiable for Me {
     fn description(&self) -> &'static Description {
         Me::describe()
+    }
+
+    fn values(&self) -> Vec<f64> {
+        self.parameters().values()
     }
 
     fn inputs(&self) -> Vec<Input> {
@@ -77,10 +113,106 @@ impl<Me: Mechanism> Differentiable for Me {
         Mechanism::machine(self)
     }
 
+    fn tuned(&self, values: &[f64]) -> Result<Rc<dyn Machine>, ParameterError> {
+        Ok(Mechanism::machine(&Me::make(Me::Parameters::of_values(values), &Mechanism::inputs(self))?))
+    }
+
     fn sloped(&self, inputs: &[Input]) -> Result<Rc<dyn Machine<Gradient>>, ParameterError> {
         Ok(Me::make(self.parameters().clone(), inputs)?.visit(Lifted))
     }
 }
+
+impl<S: Scalar, Me: Mechanism> Liftable<S> for Me {
+    fn lifted(&self, values: &[S]) -> Result<Rc<dyn Machine<S>>, ParameterError> {
+        self.visit_lifted::<S, S, _>(Lift(values))
+    }
+}
+
+/// Makes a model of values of its parameters.
+struct Lift<'a, S>(&'a [S]);
+
+impl<S: Scalar> LiftedVisitor<S, S> for Lift<'_, S> {
+    type Output = Result<Rc<dyn Machine<S>>, ParameterError>;
+
+    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
+        self,
+        _: &Mo,
+        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
+        lifted: impl Fn(&[S]) -> Result<Li, ParameterError>,
+        _: impl Fn(&[&Li], fn(&[S]) -> S) -> Ot,
+    ) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M> + Clone + 'static,
+        Li: Model<S, N, G, M> + 'static,
+        Ot: Model<S, N, G, M> + 'static,
+    {
+        Ok(Rc::new(Over::<Rc<Li>, N, G, M>(Rc::new(lifted(self.0)?))))
+    }
+}
+
+/// Models with slopes along a few directions each, and all of them as one for steps with slopes in vectors.
+#[doc(hidden)]
+pub struct SideBySide<V> {
+    /// Each model.
+    pub each: Vec<Rc<dyn Machine<Gradient>>>,
+    /// The model whose numbers have the slopes of all of them, one after the other.
+    pub all: Box<dyn Rates<V>>,
+}
+
+/// A model whose slopes along many directions are calculated side by side, in the vectors `V`.
+#[doc(hidden)]
+pub trait Joinable<V>: Liftable<Gradient> {
+    /// The models with these values of the parameters, as many as have slopes in the vectors at most.
+    ///
+    /// # Errors
+    /// As [`Tunable::tuned`].
+    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Result<SideBySide<V>, ParameterError>;
+}
+
+impl<V: Slopes, Me: Mechanism> Joinable<V> for Me {
+    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Result<SideBySide<V>, ParameterError> {
+        self.visit_lifted::<Gradient, GradientIn<V>, _>(Join(values))
+    }
+}
+
+/// Makes models of values with slopes, and joins them.
+struct Join<'a>(&'a [Vec<Gradient>]);
+
+impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Join<'_> {
+    type Output = Result<SideBySide<V>, ParameterError>;
+
+    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
+        self,
+        _: &Mo,
+        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
+        lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
+        joined: impl Fn(&[&Li], fn(&[Gradient]) -> GradientIn<V>) -> Ot,
+    ) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M> + Clone + 'static,
+        Li: Model<Gradient, N, G, M> + 'static,
+        Ot: Model<GradientIn<V>, N, G, M> + 'static,
+    {
+        let models = self.0.iter().map(|values| lifted(values).map(Rc::new)).collect::<Result<Vec<_>, _>>()?;
+        let all = joined(&models.iter().map(|model| &**model).collect::<Vec<_>>(), GradientIn::joined);
+        let each = models.into_iter().map(|model| Rc::new(Over::<Rc<Li>, N, G, M>(model)) as Rc<dyn Machine<Gradient>>);
+        Ok(SideBySide { each: each.collect(), all: Box::new(InVectors::<Ot, N, G>(all)) })
+    }
+}
+
+/// A model whose runs its slopes can follow, in the vectors of whatever machine is at hand.
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+pub trait Followed: Joinable<Everywhere> + Joinable<Avx2> + Joinable<Avx512> {}
+
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+impl<Mo: Joinable<Everywhere> + Joinable<Avx2> + Joinable<Avx512>> Followed for Mo {}
+
+/// A model whose runs its slopes can follow, in the vectors of whatever machine is at hand.
+#[cfg(all(feature = "std", not(target_arch = "x86_64")))]
+pub trait Followed: Joinable<Eight> {}
+
+#[cfg(all(feature = "std", not(target_arch = "x86_64")))]
+impl<Mo: Joinable<Eight>> Followed for Mo {}
 
 /// Shares a copy of a model in numbers with slopes.
 struct Lifted;

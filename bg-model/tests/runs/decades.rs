@@ -4,11 +4,12 @@
 use bg_model::bond_graph;
 use bg_model::capability::Storages;
 use bg_model::description::StateKind;
+use bg_model::dynamics::Dynamics;
 use bg_model::extended::{self, Accuracy};
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::{LiftedVisitor, Mechanism, ModelVisitor};
+use bg_model::mechanism::{Liftable, Mechanism, ModelVisitor};
 use bg_model::nalgebra::SVector;
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::parameters::Parameters;
 use bg_model::run::{Request, Simulation, Trajectory};
 use bg_model::scalar::{DoubleDouble, Scalar};
 use bg_model::simulation::{Part, Samples, Span};
@@ -88,39 +89,19 @@ impl ModelVisitor<f64> for Counting<'_> {
     }
 }
 
-/// The states at some instants (s) in double-double arithmetic.
-struct Exact<'a> {
-    values: &'a [f64],
-    instants: &'a [f64],
-}
-
-impl LiftedVisitor<DoubleDouble, DoubleDouble> for Exact<'_> {
-    type Output = Vec<Vec<f64>>;
-
-    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
-        self,
-        _: &Mo,
-        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
-        lifted: impl Fn(&[DoubleDouble]) -> Result<Li, ParameterError>,
-        _: impl Fn(&[&Li], fn(&[DoubleDouble]) -> DoubleDouble) -> Ot,
-    ) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M>,
-        Li: Model<DoubleDouble, N, G, M>,
-        Ot: Model<DoubleDouble, N, G, M>,
-    {
-        let values: Vec<DoubleDouble> = self.values.iter().copied().map(DoubleDouble::from_f64).collect();
-        let system = lifted(&values).expect("in range");
-        let start = system.start().expect("a start");
-        let span = Span { t0: 0.0, t_end: *self.instants.last().expect("an instant") };
-        let accuracy = Accuracy { columns: 10, tolerance: 1e-15 };
-        let mut states = Vec::new();
-        extended::integrate(&system, &start, span, accuracy, self.instants, |_, x, _| {
-            states.push(x.map(DoubleDouble::to_f64).as_slice().to_vec());
-        })
-        .expect("a run");
-        states
-    }
+/// The states of a model at some instants (s) in double-double arithmetic.
+fn exact(model: &dyn Liftable<DoubleDouble>, instants: &[f64]) -> Vec<Vec<f64>> {
+    let values: Vec<DoubleDouble> = model.values().into_iter().map(DoubleDouble::from_f64).collect();
+    let system = model.lifted(&values).expect("in range");
+    let start = system.start().expect("a start");
+    let span = Span { t0: 0.0, t_end: *instants.last().expect("an instant") };
+    let accuracy = Accuracy { columns: 10, tolerance: 1e-15 };
+    let mut states = Vec::new();
+    extended::integrate(&*system, &start, span, accuracy, instants, &mut |_, x, _| {
+        states.push(x.iter().copied().map(DoubleDouble::to_f64).collect());
+    })
+    .expect("a run");
+    states
 }
 
 /// The largest error of a run up to `t_end` (s) over its tolerance, at the ends of some of its steps: of any state,
@@ -133,8 +114,7 @@ fn error<Me: Mechanism>(model: &Me, t_end: f64, method: Integrator, rtol: f64) -
     rows.dedup();
     let instants: Vec<f64> = rows.iter().map(|&row| run.times[row]).collect();
     let sizes = model.visit(Counting(&run));
-    let exact = Exact { values: &model.parameters().values(), instants: &instants };
-    let exact = model.visit_lifted(exact);
+    let exact = exact(model, &instants);
     let columns = run.recording.columns.iter().zip(&sizes).enumerate();
     let errors = columns.flat_map(|(state, (column, size))| {
         let both = rows.iter().zip(&exact);

@@ -2,6 +2,7 @@
 
 use crate::problems::{Record, settings};
 use bg_model::bond_graph;
+use bg_model::dynamics::{Machine, Over};
 use bg_model::extended::{self, Accuracy};
 use bg_model::input::{Input, Table, TableError};
 use bg_model::integrator::{AnyMethod, Dop853, Integrator, Rk4};
@@ -135,14 +136,15 @@ fn rows_save_the_rejected_steps_of_kinks_and_are_more_exact() {
     let with_rows = oscillator(Input::table(table));
     let without = oscillator(Input::function(move |t| same.value(t)));
     let span = Span { t0: 0.0, t_end: 20.0 };
-    let start = SVector::from_element(DoubleDouble::from_f64(0.0));
+    let start = [DoubleDouble::from_f64(0.0); 2];
     let exact = Oscillator::<DoubleDouble>::in_scalar(
         OscillatorParameters::default(),
         OscillatorInputs { force: Input::table(triangles(41)) },
     );
     let accuracy = Accuracy { columns: 10, tolerance: 1e-20 };
-    let exact = extended::integrate(&exact.expect("in range"), &start, span, accuracy, &[], |_, _, _| {});
-    let exact = exact.expect("the run ends").x.map(DoubleDouble::to_f64);
+    let exact = Over::<_, 2, 0, 0>(&exact.expect("in range"));
+    let exact = extended::integrate(&exact, &start, span, accuracy, &[], &mut |_, _, _| {}).expect("the run ends");
+    let exact = SVector::<f64, 2>::from_fn(|state, _| exact.x[state].to_f64());
     for integrator in [Integrator::Dop853, Integrator::Cfmr7, Integrator::Radau9, Integrator::Rodas5p] {
         let [(with_rows, _), (without, _)] =
             [&with_rows, &without].map(|model| run(model, integrator.method(1.0), span.t_end, &settings(1e-8)));
@@ -261,11 +263,12 @@ fn a_condition_and_samples_see_a_table_as_it_is() {
 fn references_see_tables_beyond_double_precision() {
     let inputs = MassInputs { push: linear(&TIMES, &FORCES), pull: Input::default() };
     let model = Mass::<DoubleDouble>::in_scalar(MassParameters::default(), inputs).expect("in range");
-    let start = SVector::from_element(DoubleDouble::from_f64(0.0));
+    let start = [DoubleDouble::from_f64(0.0); 2];
     let accuracy = Accuracy { columns: 6, tolerance: 1e-26 };
     let span = Span { t0: 0.0, t_end: 4.0 };
-    let finish = extended::integrate(&model, &start, span, accuracy, &[1.0], |_, _, _| {}).expect("the run ends");
-    let mut y = SVector::<DoubleDouble, 2>::from_element(DoubleDouble::from_f64(0.0));
+    let model = Over::<_, 2, 0, 2>(&model);
+    let finish = extended::integrate(&model, &start, span, accuracy, &[1.0], &mut |_, _, _| {}).expect("the run ends");
+    let mut y = [DoubleDouble::from_f64(0.0); 2];
     model.outputs(DoubleDouble::from_f64(4.0), &finish.x, &finish.negative, &mut y);
     for (found, exact) in y.iter().zip(closed_form::<DoubleDouble>(4.0)) {
         let error = (*found - exact).to_f64().abs();

@@ -16,7 +16,7 @@ use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::run::{LaneError, Request, State, Trajectory, in_lanes};
 use bg_model::sensitivity::{
-    Direction, Gradients, Objective, Sensitivities, SensitivityError, gradient, sensitivities,
+    Gradients, Objective, Sensitivities, SensitivityError, directions, gradient, sensitivities,
 };
 
 use crate::machine::Machine;
@@ -197,7 +197,7 @@ impl<Me: Mechanism, La: Switch, Gr: Switch, So: Switch> Machine for Made<Me, La,
     }
 
     fn sensitivities(&self, request: &Request, by: &[&str]) -> Option<Result<Sensitivities, SensitivityError>> {
-        On::when(|| sensitivities(&self.model, request, &directions::<Me>(by)?))
+        On::when(|| sensitivities(&self.model, request, &directions(Me::describe(), by)?))
     }
 
     fn gradient(
@@ -206,7 +206,7 @@ impl<Me: Mechanism, La: Switch, Gr: Switch, So: Switch> Machine for Made<Me, La,
         objective: &Objective<'_>,
         by: &[&str],
     ) -> Option<Result<Gradients, SensitivityError>> {
-        Gr::when(|| gradient(&self.model, request, objective, &directions::<Me>(by)?))
+        Gr::when(|| gradient(&self.model, request, objective, &directions(Me::describe(), by)?))
     }
 
     fn identified(
@@ -220,15 +220,10 @@ impl<Me: Mechanism, La: Switch, Gr: Switch, So: Switch> Machine for Made<Me, La,
     }
 
     fn solution(&self, accuracy: Accuracy, instants: &[f64]) -> Option<Result<Solution, ReferenceError>> {
-        So::when(|| solve(&self.model, accuracy, instants, |_| true))
+        So::when(|| solve(&self.model, accuracy, instants, &|_| true))
     }
 
     fn in_lanes(&self, request: &Request, own: &[Vec<f64>]) -> Option<Vec<Result<Trajectory, LaneError>>> {
         La::when(|| in_lanes(&self.model, request, own))
     }
-}
-
-/// The parameters of these names as directions.
-fn directions<Me: Mechanism>(by: &[&str]) -> Result<Vec<Direction>, ParameterError> {
-    by.iter().map(|name| Direction::parameter::<Me>(name)).collect()
 }

@@ -184,7 +184,7 @@ impl MechanismVisitor for Compute<'_> {
     fn visit<Sc: Mechanism>(self) -> Self::Output {
         let Self { reference, accuracy, instants } = self;
         let model = Sc::make(reference.scene().parameters(&reference.parameters())?, &[])?;
-        Ok(solve(&model, accuracy, instants, |output| !output.starts_with("gap_"))?)
+        Ok(solve(&model, accuracy, instants, &|output| !output.starts_with("gap_"))?)
     }
 }
 

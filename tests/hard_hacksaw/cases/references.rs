@@ -6,12 +6,10 @@
 
 use std::fmt::Write;
 
-use bg_model::extended::{Accuracy, Fault, integrate};
+use bg_model::extended::{Accuracy, Fault, outputs};
 use bg_model::input::Input;
-use bg_model::nalgebra::SVector;
-use bg_model::scalar::{DoubleDouble, Scalar};
-use bg_model::simulation::Span;
-use bg_model::system::Model;
+use bg_model::mechanism::Liftable;
+use bg_model::scalar::DoubleDouble;
 use hacksaw::mechanism::{Paper, PaperParameters};
 use hacksaw::precision::reference::Reference;
 
@@ -102,18 +100,14 @@ pub fn make(mut progress: impl FnMut(&str)) -> Result<String, Fault> {
 /// # Panics
 /// The start does not close.
 pub fn planar_poses(case: &Planar, accuracy: Accuracy) -> Result<Vec<Vec<f64>>, Fault> {
-    let parameters: PaperParameters = changed(&case.changes);
-    let plain: Paper<f64> = Paper::new(parameters.clone()).expect("in range");
-    let exact = Paper::<DoubleDouble>::in_scalar(parameters).expect("in range");
-    poses(&plain, &exact, case.instants, accuracy)
+    let model = Paper::new(changed::<PaperParameters>(&case.changes)).expect("in range");
+    poses(&model, case.instants, accuracy)
 }
 
 fn reversed_poses(instants: &[f64], accuracy: Accuracy) -> Result<Vec<Vec<f64>>, Fault> {
-    let parameters = ReversalParameters { reversal: REVERSAL };
-    let inputs = || ReversalInputs { extra: Input::constant(0.0) };
-    let plain: Reversal<f64> = Reversal::new(parameters.clone(), inputs()).expect("in range");
-    let exact = Reversal::<DoubleDouble>::in_scalar(parameters, inputs()).expect("in range");
-    poses(&plain, &exact, instants, accuracy)
+    let inputs = ReversalInputs { extra: Input::constant(0.0) };
+    let model = Reversal::new(ReversalParameters { reversal: REVERSAL }, inputs).expect("in range");
+    poses(&model, instants, accuracy)
 }
 
 /// Two computations, and the lines of the first with their differences.
@@ -134,27 +128,15 @@ fn lines(
     Ok(())
 }
 
-/// The planar poses of `exact` from the start of `plain`.
-fn poses<A, B, const N: usize, const G: usize, const M: usize>(
-    plain: &A,
-    exact: &B,
-    instants: &[f64],
-    accuracy: Accuracy,
-) -> Result<Vec<Vec<f64>>, Fault>
-where
-    A: Model<f64, N, G, M>,
-    B: Model<DoubleDouble, N, G, M>,
-{
-    let start = plain.start().expect("the mechanism closes").map(DoubleDouble::from);
-    let outputs = plain.description().outputs;
-    let place = |name: &String| outputs.iter().position(|output| output.name == name).expect("a pose");
+/// The planar poses of a model from the start that it has in `f64`.
+fn poses(model: &dyn Liftable<DoubleDouble>, instants: &[f64], accuracy: Accuracy) -> Result<Vec<Vec<f64>>, Fault> {
+    let start = model.machine().start().expect("the mechanism closes");
+    let values: Vec<DoubleDouble> = model.values().into_iter().map(DoubleDouble::from).collect();
+    let exact = model.lifted(&values).expect("in range");
+    let table = model.description().outputs;
+    let place = |name: &String| table.iter().position(|output| output.name == name).expect("a pose");
     let places: Vec<usize> = planar_names().iter().map(place).collect();
     let mut rows = Vec::new();
-    let mut y = SVector::from_element(DoubleDouble::default());
-    let span = Span { t0: 0.0, t_end: instants.last().copied().unwrap_or(0.0) };
-    integrate(exact, &start, span, accuracy, instants, |t, x, negative| {
-        exact.outputs(t, x, negative, &mut y);
-        rows.push(places.iter().map(|place| y[*place].to_f64()).collect());
-    })?;
+    outputs(&*exact, &start, accuracy, instants, &places, &mut |_, values| rows.push(values.to_vec()))?;
     Ok(rows)
 }

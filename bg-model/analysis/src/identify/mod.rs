@@ -10,11 +10,11 @@ pub mod fit;
 mod noise;
 
 use bg_model::description::ParameterInfo;
-use bg_model::mechanism::Mechanism;
+use bg_model::mechanism::Followed;
 use bg_model::nalgebra::{DMatrix, DVector};
-use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::parameters::ParameterError;
 use bg_model::run::{Request, Simulation, Trajectory};
-use bg_model::sensitivity::{Direction, Sensitivities, SensitivityError, sensitivities_of};
+use bg_model::sensitivity::{Direction, Sensitivities, SensitivityError, directions, sensitivities_of};
 use bg_model::simulation::Samples;
 use thiserror::Error;
 
@@ -157,40 +157,89 @@ const NAMED: f64 = 0.1;
 ///
 /// # Errors
 /// [`IdentifyError`].
-pub fn identify<Me: Mechanism>(
-    model: &Me,
+pub fn identify(
+    model: &dyn Followed,
     request: &Request,
     data: &Data,
     variables: &[Variable],
-    mut told: impl FnMut(&[f64], f64),
+    told: &mut dyn FnMut(&[f64], f64),
 ) -> Result<Identified, IdentifyError> {
-    let directions: Vec<Direction> =
-        variables.iter().map(|of| Direction::parameter::<Me>(of.info.name)).collect::<Result<_, _>>()?;
-    let made = |values: &[f64]| {
-        let mut parameters = model.parameters().clone();
-        variables.iter().zip(values).try_for_each(|(of, &value)| parameters.set(of.info.name, value))?;
-        Me::make(parameters, &model.inputs())
-    };
+    let names: Vec<&str> = variables.iter().map(|of| of.info.name).collect();
+    let directions = directions(model.description(), &names)?;
     let outputs: Vec<usize> = data.columns.iter().map(|column| column.output).collect();
-    let plain = |request: &Request, values: &[f64]| Ok(Simulation::of(&made(values)?, request.clone()).run()?);
-    let with = |request: &Request, values: &[f64]| sensitivities_of(&made(values)?, request, &directions, &outputs);
-    fitted(Runs { plain: &plain, with: &with }, request, data, variables, &mut told)
+    let count = data.count();
+    if count <= variables.len() {
+        return Err(IdentifyError::TooFew { values: count, parameters: variables.len() });
+    }
+    let t_end = *data.times.last().expect("there are values");
+    let rtol = request.rtol;
+    let request = Request { samples: Samples::At(data.times.clone()), t_end, ..request.clone() };
+    let inner = |value: fn(&Variable) -> f64| {
+        DVector::from_iterator(variables.len(), variables.iter().map(|of| of.inner(value(of))))
+    };
+    let bounds = [inner(|of| of.lower), inner(|of| of.upper)];
+    let sizes = DVector::from_iterator(variables.len(), variables.iter().map(Variable::size));
+    let sizes_of_columns: Vec<f64> = data.columns.iter().map(|column| spread(&column.values)).collect();
+    let noise = sizes_of_columns.clone();
+    let runs = Runs { model, request, own: model.values(), directions, outputs };
+    let mut misfit = Misfit { runs, data, variables, noise, told, latest: None, derivatives: 0 };
+    let (mut start, mut evaluations) = (inner(|of| of.start), 0);
+    for round in 0.. {
+        let fitted = fit(&start, [&bounds[0], &bounds[1]], &sizes, EVALUATIONS, &mut misfit);
+        let fitted = fitted.map_err(IdentifyError::Start)?;
+        // Of a later fit the start is what the one before has come to.
+        evaluations += fitted.evaluations - usize::from(round > 0);
+        start.copy_from(&fitted.x);
+        let (_, found) = misfit.latest.as_ref().expect("derivatives are taken at the start");
+        let models = &found.trajectory.columns;
+        let found = noise_of(data, models, &sizes_of_columns);
+        let is_settled = found.iter().zip(&misfit.noise).all(|(found, noise)| (found - noise).abs() <= SETTLED * noise);
+        if is_settled || round + 1 == FITS {
+            let columns = data.columns.iter().map(|measured| column(measured, &models[measured.output].values, rtol));
+            let runs = (evaluations, misfit.derivatives);
+            return Ok(identified(variables, &fitted, columns.collect(), runs));
+        }
+        misfit.noise = found;
+    }
+    unreachable!("the last of several fits is given")
 }
 
-/// A run of the variables' values.
-type Run<'a, T> = &'a dyn Fn(&Request, &[f64]) -> Result<T, SensitivityError>;
-
-/// What makes runs, whatever the model's type.
+/// What makes runs of the variables' values.
 struct Runs<'a> {
-    plain: Run<'a, Trajectory>,
+    model: &'a dyn Followed,
+    request: Request,
+    /// The values of all of the model's parameters.
+    own: Vec<f64>,
+    /// What is differentiated by: the variables, in their order.
+    directions: Vec<Direction>,
+    /// The outputs that are measured.
+    outputs: Vec<usize>,
+}
+
+impl Runs<'_> {
+    /// The values of all parameters.
+    fn all(&self, values: &[f64]) -> Vec<f64> {
+        let mut all = self.own.clone();
+        for (direction, &value) in self.directions.iter().zip(values) {
+            let Direction::Parameter(place) = *direction else { unreachable!("a variable is a parameter") };
+            all[place] = value;
+        }
+        all
+    }
+
+    fn plain(&self, values: &[f64]) -> Result<Trajectory, SensitivityError> {
+        Ok(Simulation::over(self.model.tuned(&self.all(values))?, self.request.clone()).run()?)
+    }
+
     /// With derivatives by the variables.
-    with: Run<'a, Sensitivities>,
+    fn with(&self, values: &[f64]) -> Result<Sensitivities, SensitivityError> {
+        sensitivities_of(self.model, &self.all(values), &self.request, &self.directions, &self.outputs)
+    }
 }
 
 /// The residuals of a model in parts of the noise of their columns.
 struct Misfit<'a> {
     runs: Runs<'a>,
-    request: Request,
     data: &'a Data,
     variables: &'a [Variable],
     noise: Vec<f64>,
@@ -237,7 +286,7 @@ impl Problem for Misfit<'_> {
 
     fn residuals(&mut self, x: &DVector<f64>) -> Result<DVector<f64>, SensitivityError> {
         let values = self.values(x);
-        let residuals = self.left(&(self.runs.plain)(&self.request, &values)?.columns);
+        let residuals = self.left(&self.runs.plain(&values)?.columns);
         self.tell(&values, &residuals);
         Ok(residuals)
     }
@@ -246,7 +295,7 @@ impl Problem for Misfit<'_> {
         let values = self.values(x);
         let is_start = self.latest.is_none();
         if self.latest.as_ref().is_none_or(|(there, _)| there != x) {
-            self.latest = Some((x.clone(), (self.runs.with)(&self.request, &values)?));
+            self.latest = Some((x.clone(), self.runs.with(&values)?));
             self.derivatives += 1;
         }
         let (_, found) = self.latest.as_ref().expect("it was just made");
@@ -256,50 +305,6 @@ impl Problem for Misfit<'_> {
         }
         Ok((residuals, slopes))
     }
-}
-
-/// As [`identify`], whatever the model's type.
-fn fitted(
-    runs: Runs,
-    request: &Request,
-    data: &Data,
-    variables: &[Variable],
-    told: &mut dyn FnMut(&[f64], f64),
-) -> Result<Identified, IdentifyError> {
-    let count = data.count();
-    if count <= variables.len() {
-        return Err(IdentifyError::TooFew { values: count, parameters: variables.len() });
-    }
-    let t_end = *data.times.last().expect("there are values");
-    let rtol = request.rtol;
-    let request = Request { samples: Samples::At(data.times.clone()), t_end, ..request.clone() };
-    let inner = |value: fn(&Variable) -> f64| {
-        DVector::from_iterator(variables.len(), variables.iter().map(|of| of.inner(value(of))))
-    };
-    let bounds = [inner(|of| of.lower), inner(|of| of.upper)];
-    let sizes = DVector::from_iterator(variables.len(), variables.iter().map(Variable::size));
-    let sizes_of_columns: Vec<f64> = data.columns.iter().map(|column| spread(&column.values)).collect();
-    let noise = sizes_of_columns.clone();
-    let mut misfit = Misfit { runs, request, data, variables, noise, told, latest: None, derivatives: 0 };
-    let (mut start, mut evaluations) = (inner(|of| of.start), 0);
-    for round in 0.. {
-        let fitted = fit(&start, [&bounds[0], &bounds[1]], &sizes, EVALUATIONS, &mut misfit);
-        let fitted = fitted.map_err(IdentifyError::Start)?;
-        // Of a later fit the start is what the one before has come to.
-        evaluations += fitted.evaluations - usize::from(round > 0);
-        start.copy_from(&fitted.x);
-        let (_, found) = misfit.latest.as_ref().expect("derivatives are taken at the start");
-        let models = &found.trajectory.columns;
-        let found = noise_of(data, models, &sizes_of_columns);
-        let is_settled = found.iter().zip(&misfit.noise).all(|(found, noise)| (found - noise).abs() <= SETTLED * noise);
-        if is_settled || round + 1 == FITS {
-            let columns = data.columns.iter().map(|measured| column(measured, &models[measured.output].values, rtol));
-            let runs = (evaluations, misfit.derivatives);
-            return Ok(identified(variables, &fitted, columns.collect(), runs));
-        }
-        misfit.noise = found;
-    }
-    unreachable!("the last of several fits is given")
 }
 
 /// A measured column beside the values of a run with the relative tolerance `rtol`.

@@ -15,18 +15,11 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-#[cfg(feature = "std")]
-use nalgebra::SVector;
-
 use super::dropped_of;
 use super::factors::{DISTINCT, Factors, Matrix};
-#[cfg(feature = "std")]
-use crate::model::capability::Impacts;
 use crate::model::dynamics::Dynamics;
 use crate::model::holding::{Stop, Stops};
 use crate::model::scalar::Scalar;
-#[cfg(feature = "std")]
-use crate::model::system::switches;
 
 /// Flows and impulses that are smaller beside the largest are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -46,22 +39,15 @@ pub(crate) enum After {
     Rests,
 }
 
-/// What an impact is calculated from: [`Impacts::impact`], over slices.
+/// What an impact is calculated from: [`Impacts::impact`](crate::model::capability::Impacts::impact), over slices.
 pub(crate) type Impact<'a, S> = dyn Fn(S, &[S], &[bool], &mut [S]) + 'a;
 
 /// That of a system over slices.
-pub(crate) fn impacts_of(system: &dyn Dynamics) -> impl Fn(f64, &[f64], &[bool], &mut [f64]) {
-    |t, x, negative, entries| system.impact(t, x, negative, entries)
-}
-
-/// That of a system whose numbers are in its type.
-#[cfg(feature = "std")]
-pub(crate) fn impacts_in<I, S, const N: usize, const G: usize>(impacts: &I) -> impl Fn(S, &[S], &[bool], &mut [S])
+pub(crate) fn impacts_of<S>(system: &dyn Dynamics<S>) -> impl Fn(S, &[S], &[bool], &mut [S])
 where
-    I: Impacts<S, N, G>,
     S: Scalar<Switch = bool>,
 {
-    |t, x, negative, entries| impacts.impact(t, &SVector::from_column_slice(x), switches(negative), entries)
+    |t, x, negative, entries| system.impact(t, x, negative, entries)
 }
 
 /// An impact, with room for its numbers.

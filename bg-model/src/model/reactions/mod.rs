@@ -24,8 +24,6 @@ use crate::model::holding::{FITTING, Held, HeldNow, Redundancy, Slip, Slipping};
 use crate::model::nearest::{lifted, nearest};
 use crate::model::scalar::Scalar;
 use factors::{Factors, Matrix};
-#[cfg(feature = "std")]
-pub(crate) use impact::impacts_in;
 pub(crate) use impact::{After, Collision, impacts_of};
 #[cfg(feature = "std")]
 pub(crate) use monitor::LoopsInLanes;

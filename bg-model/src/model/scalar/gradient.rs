@@ -7,7 +7,7 @@
 use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::slopes::{Everywhere, Slopes};
+use super::slopes::{Everywhere, Slopes, WIDTH};
 use super::{Both, Scalar};
 
 /// A value and its derivatives along some directions, in vectors `V`.
@@ -38,6 +38,15 @@ impl<V: Slopes> GradientIn<V> {
     #[inline(always)]
     pub fn slopes(self) -> V::Numbers {
         self.slopes.numbers()
+    }
+
+    /// The value of some numbers with the slopes of all of them side by side.
+    #[must_use]
+    pub fn joined(numbers: &[Gradient]) -> Self {
+        let mut slopes = V::filled(0.0).numbers();
+        let places = slopes.as_mut().chunks_exact_mut(WIDTH);
+        places.zip(numbers).for_each(|(place, number)| place.copy_from_slice(&number.slopes()));
+        Self::new(numbers[0].value, slopes)
     }
 
     /// A function of this number from its value and its derivative here.
@@ -177,7 +186,7 @@ mod tests {
     use crate::model::scalar::Dual;
     #[cfg(target_arch = "x86_64")]
     use crate::model::scalar::lanes::{Avx2, Avx512};
-    use crate::model::scalar::slopes::{Eight, WIDTH};
+    use crate::model::scalar::slopes::Eight;
     use crate::model::scalar::tests::everything;
 
     /// The value and the slopes of a function of three pairs of numbers, which have up to four slopes.

@@ -26,8 +26,10 @@ use pulp::NullaryFnOnce;
 
 pub use double_double::DoubleDouble;
 pub use dual::Dual;
-pub use gradient::Gradient;
+pub use gradient::{Gradient, GradientIn};
 pub use pair::{Both, Pair, PairOfDoubles};
+#[doc(hidden)]
+pub use slopes::Slopes;
 
 /// A real number that generated code can calculate with.
 ///

@@ -5,41 +5,39 @@
 //! Mathematik 8, 1966; Hairer, Norsett, Wanner: Solving Ordinary Differential Equations I, section II.9. Column j takes
 //! 2j substeps (Deuflhard's harmonic sequence); no smoothing, which costs a rate in each column and stability per rate.
 
-use nalgebra::SVector;
-
 use crate::model::scalar::Scalar;
+
+/// Writes a rate.
+pub type Rate<'a, S> = dyn FnMut(S, &[S], &mut [S]) + 'a;
+/// Is shown a time (s) and a state.
+pub type Pass<'a, S> = dyn FnMut(S, &[S]) + 'a;
 
 /// The method with its memory.
 #[derive(Debug)]
-pub struct Extrapolation<S, const N: usize> {
-    columns: usize,
-    /// The last row of the extrapolation table; its last two entries are of the highest orders.
-    row: Vec<SVector<S, N>>,
+pub struct Extrapolation<S> {
+    /// The last row of the extrapolation table, a state for each column; its last two entries are of the highest
+    /// orders.
+    row: Vec<Vec<S>>,
     /// Where the last attempt led.
-    pub end: SVector<S, N>,
+    pub end: Vec<S>,
 }
 
-impl<S: Scalar, const N: usize> Extrapolation<S, N> {
-    pub fn new(columns: usize) -> Self {
-        let zero = SVector::from_element(S::from_f64(0.0));
-        Self { columns, row: vec![zero; columns], end: zero }
+impl<S: Scalar> Extrapolation<S> {
+    /// The method of so many columns for so many states.
+    pub fn new(columns: usize, states: usize) -> Self {
+        let zero = vec![S::from_f64(0.0); states];
+        Self { row: vec![zero.clone(); columns], end: zero }
     }
 
     /// Makes a step of size `h` (s) from `x` at `t` (s). `pass` is shown the substeps of the finest column, which are
     /// of second order only.
-    pub fn attempt(
-        &mut self,
-        t: S,
-        x: &SVector<S, N>,
-        h: S,
-        mut rate: impl FnMut(S, &SVector<S, N>, &mut SVector<S, N>),
-        mut pass: impl FnMut(S, &SVector<S, N>),
-    ) {
-        let mut first = SVector::from_element(S::from_f64(0.0));
+    pub fn attempt(&mut self, t: S, x: &[S], h: S, rate: &mut Rate<'_, S>, pass: &mut Pass<'_, S>) {
+        let mut first = vec![S::from_f64(0.0); x.len()];
         rate(t, x, &mut first);
-        for j in 0..self.columns {
-            let is_finest = j + 1 == self.columns;
-            let mut value = midpoints(t, x, &first, h, 2 * (j + 1), &mut rate, |t, x| {
+        let columns = self.row.len();
+        for j in 0..columns {
+            let is_finest = j + 1 == columns;
+            let mut value = midpoints(t, x, &first, h, 2 * (j + 1), rate, &mut |t, x| {
                 if is_finest {
                     pass(t, x);
                 }
@@ -48,19 +46,19 @@ impl<S: Scalar, const N: usize> Extrapolation<S, N> {
             for c in 0..j {
                 let (fine, coarse) = (((j + 1) * (j + 1)) as f64, ((j - c) * (j - c)) as f64);
                 let weight = S::from_f64(coarse) / S::from_f64(fine - coarse);
-                let row = self.row[c];
-                let next = SVector::from_fn(|i, _| value[i] + (value[i] - row[i]) * weight);
-                self.row[c] = value;
-                value = next;
+                for (value, row) in value.iter_mut().zip(&mut self.row[c]) {
+                    let next = *value + (*value - *row) * weight;
+                    *row = core::mem::replace(value, next);
+                }
             }
             self.row[j] = value;
         }
-        self.end = self.row[self.columns - 1];
+        self.end.copy_from_slice(&self.row[columns - 1]);
     }
 
     /// The largest difference between the two highest orders, over `tolerance` times the size of each state, or the end
     /// of the step where that is more; not a number where the end is none.
-    pub fn error(&self, sizes: &SVector<f64, N>, tolerance: f64) -> f64 {
+    pub fn error(&self, sizes: &[f64], tolerance: f64) -> f64 {
         let [.., lower, higher] = &self.row[..] else { return f64::NAN };
         let error = |i: usize| {
             let difference = (higher[i] - lower[i]).to_f64().abs();
@@ -68,30 +66,32 @@ impl<S: Scalar, const N: usize> Extrapolation<S, N> {
             if difference == 0.0 { 0.0 } else { difference / (tolerance * sizes[i].max(higher[i].to_f64().abs())) }
         };
         // A NaN stays.
-        (0..N).map(error).fold(0.0, |most, error| if error > most || error.is_nan() { error } else { most })
+        (0..sizes.len()).map(error).fold(0.0, |most, error| if error > most || error.is_nan() { error } else { most })
     }
 }
 
 /// The midpoint rule over `h` in an even number of substeps, without the last one's smoothing.
-fn midpoints<S: Scalar, const N: usize>(
+fn midpoints<S: Scalar>(
     t: S,
-    x: &SVector<S, N>,
-    first: &SVector<S, N>,
+    x: &[S],
+    first: &[S],
     h: S,
     substeps: usize,
-    mut rate: impl FnMut(S, &SVector<S, N>, &mut SVector<S, N>),
-    mut pass: impl FnMut(S, &SVector<S, N>),
-) -> SVector<S, N> {
+    rate: &mut Rate<'_, S>,
+    pass: &mut Pass<'_, S>,
+) -> Vec<S> {
     let part = h / S::from_f64(substeps as f64);
     let double = part + part;
-    let (mut before, mut here) = (*x, SVector::from_fn(|i, _| x[i] + part * first[i]));
-    let mut dx = *first;
+    let mut before = x.to_vec();
+    let mut here: Vec<S> = x.iter().zip(first).map(|(x, first)| *x + part * *first).collect();
+    let mut dx = first.to_vec();
     for m in 1..substeps {
         let now = t + S::from_f64(m as f64) * part;
         pass(now, &here);
         rate(now, &here, &mut dx);
-        let next = SVector::from_fn(|i, _| before[i] + double * dx[i]);
-        (before, here) = (here, next);
+        // The state after the next half of the way takes the place of the one before.
+        before.iter_mut().zip(&dx).for_each(|(before, dx)| *before = *before + double * *dx);
+        core::mem::swap(&mut before, &mut here);
     }
     here
 }

@@ -14,11 +14,10 @@ mod sizes;
 #[cfg(test)]
 mod tests;
 
-use nalgebra::SVector;
 use thiserror::Error;
 
-use crate::model::scalar::Scalar;
-use crate::model::system::System;
+use crate::model::dynamics::{Dynamics, Machine};
+use crate::model::scalar::{DoubleDouble, Scalar};
 use crate::solve::failure::switch_text;
 use crate::solve::simulation::Span;
 use extrapolation::Extrapolation;
@@ -46,11 +45,11 @@ pub struct Event<S> {
 
 /// Where a run has come to, and what it took.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finish<S, const N: usize, const G: usize> {
+pub struct Finish<S> {
     /// State at the end.
-    pub x: SVector<S, N>,
+    pub x: Vec<S>,
     /// The branches of the switches at the end.
-    pub negative: [bool; G],
+    pub negative: Vec<bool>,
     /// The changes of branches, in the order of time.
     pub events: Vec<Event<S>>,
     /// Accepted steps.
@@ -96,6 +95,9 @@ const SMALLEST: f64 = 1e-24;
 /// Events in a row, each nearer to the last one than [`CLOSEST`], that end a run.
 const CROWD: usize = 100;
 
+/// Is given time (s), state and branches at an instant.
+pub type Observe<'a, S> = dyn FnMut(S, &[S], &[bool]) + 'a;
+
 /// Integrates `system` from `start` at `span.t0` to `span.t_end`; gives time, state and branches at each of the
 /// `instants` (s, ascending, in the span) to `observe`. The start is projected onto the system's invariants first.
 /// Branches at the start follow from the guards' signs; a guard that is exactly zero is decided by its sign a little
@@ -103,20 +105,20 @@ const CROWD: usize = 100;
 ///
 /// # Errors
 /// [`Fault`].
-pub fn integrate<S, Sys, const N: usize, const G: usize>(
-    system: &Sys,
-    start: &SVector<S, N>,
+///
+/// # Panics
+/// The start has another number of states.
+pub fn integrate<S: Scalar<Switch = bool>>(
+    system: &dyn Dynamics<S>,
+    start: &[S],
     span: Span,
     accuracy: Accuracy,
     instants: &[f64],
-    mut observe: impl FnMut(S, &SVector<S, N>, &[bool; G]),
-) -> Result<Finish<S, N, G>, Fault>
-where
-    S: Scalar<Switch = bool>,
-    Sys: System<S, N, G>,
-{
+    observe: &mut Observe<'_, S>,
+) -> Result<Finish<S>, Fault> {
+    assert_eq!(start.len(), system.states(), "a number for each state");
     check(span, accuracy, instants)?;
-    if system.impacts().is_some() {
+    if system.stops().is_some() {
         return Err(Fault::BadInput("stops with a restitution make the state jump, which only runs in `f64` follow"));
     }
     let mut run = Run::new(system, start, span, accuracy);
@@ -128,6 +130,32 @@ where
     run.advance_over_breaks(span.t_end)?;
     let Run { x, negative, events, steps, rejected, rate_evaluations, .. } = run;
     Ok(Finish { x, negative, events, steps, rejected, rate_evaluations })
+}
+
+/// The outputs of `model` with these places in its description at each of the `instants` (s, ascending, from 0 on), in
+/// double-double arithmetic from this start, rounded once: `told` is told the instant and their values. As
+/// [`integrate`], compiled here.
+///
+/// # Errors
+/// [`Fault`].
+///
+/// # Panics
+/// The start has another number of states; there is no such output.
+pub fn outputs(
+    model: &dyn Machine<DoubleDouble>,
+    start: &[f64],
+    accuracy: Accuracy,
+    instants: &[f64],
+    places: &[usize],
+    told: &mut dyn FnMut(f64, &[f64]),
+) -> Result<Finish<DoubleDouble>, Fault> {
+    let start: Vec<DoubleDouble> = start.iter().copied().map(DoubleDouble::from).collect();
+    let span = Span { t0: 0.0, t_end: instants.last().copied().unwrap_or(0.0) };
+    let mut y = vec![DoubleDouble::default(); model.description().outputs.len()];
+    integrate(model, &start, span, accuracy, instants, &mut |t, x, negative| {
+        model.outputs(t, x, negative, &mut y);
+        told(t.to_f64(), &places.iter().map(|&place| y[place].to_f64()).collect::<Vec<_>>());
+    })
 }
 
 fn check(span: Span, accuracy: Accuracy, instants: &[f64]) -> Result<(), Fault> {
@@ -146,44 +174,40 @@ fn check(span: Span, accuracy: Accuracy, instants: &[f64]) -> Result<(), Fault> 
 }
 
 /// A run under way.
-struct Run<'a, S, Sys, const N: usize, const G: usize> {
-    system: &'a Sys,
+struct Run<'a, S: Scalar> {
+    system: &'a dyn Dynamics<S>,
     accuracy: Accuracy,
     /// The length of the span, s.
     length: f64,
     t: S,
-    x: SVector<S, N>,
-    negative: [bool; G],
+    x: Vec<S>,
+    negative: Vec<bool>,
     /// How large each state is, in its unit.
-    sizes: SVector<f64, N>,
+    sizes: Vec<f64>,
     /// The size of the next step, s.
     step: f64,
-    method: Extrapolation<S, N>,
-    monitor: GuardMonitor<S, G>,
+    method: Extrapolation<S>,
+    monitor: GuardMonitor<S>,
     events: Vec<Event<S>>,
     steps: u64,
     rejected: u64,
     rate_evaluations: u64,
 }
 
-impl<'a, S, Sys, const N: usize, const G: usize> Run<'a, S, Sys, N, G>
-where
-    S: Scalar<Switch = bool>,
-    Sys: System<S, N, G>,
-{
-    fn new(system: &'a Sys, start: &SVector<S, N>, span: Span, accuracy: Accuracy) -> Self {
+impl<'a, S: Scalar<Switch = bool>> Run<'a, S> {
+    fn new(system: &'a dyn Dynamics<S>, start: &[S], span: Span, accuracy: Accuracy) -> Self {
         let length = span.t_end - span.t0;
         Self {
             system,
             accuracy,
             length,
             t: S::from_f64(span.t0),
-            x: *start,
-            negative: [false; G],
-            sizes: SVector::zeros(),
+            x: start.to_vec(),
+            negative: vec![false; system.switches()],
+            sizes: vec![0.0; start.len()],
             step: FIRST * length,
-            method: Extrapolation::new(accuracy.columns),
-            monitor: GuardMonitor::new(accuracy.tolerance),
+            method: Extrapolation::new(accuracy.columns, start.len()),
+            monitor: GuardMonitor::new(accuracy.tolerance, system.switches()),
             events: Vec::new(),
             steps: 0,
             rejected: 0,
@@ -220,7 +244,7 @@ where
             match self.monitor.course(&self.negative) {
                 Course::Unclear if h.to_f64() > CLOSEST * self.length => self.shorten(h, 0.5),
                 Course::WrongFromStart => {
-                    let before = self.negative;
+                    let before = self.negative.clone();
                     self.switch(self.monitor.wrong(&before))?;
                     if self.negative == before {
                         // The branch is right, so the step is too long for the guard's course.
@@ -245,19 +269,16 @@ where
     /// error over the tolerance.
     fn attempt(&mut self, h: S) -> f64 {
         let Self { system, negative, monitor, rate_evaluations, .. } = self;
-        let rate = |t: S, x: &SVector<S, N>, dx: &mut SVector<S, N>| {
+        let (system, negative) = (*system, &negative[..]);
+        let mut rate = |t: S, x: &[S], dx: &mut [S]| {
             *rate_evaluations += 1;
             system.rate(t, x, negative, dx);
         };
-        let guards = |t: S, x: &SVector<S, N>| {
-            let mut value = SVector::from_element(S::from_f64(0.0));
-            system.guards(t, x, negative, &mut value);
-            value
-        };
+        let guards = |t: S, x: &[S]| guards(system, t, x, negative);
         monitor.begin_step(guards(self.t, &self.x), h);
-        self.method.attempt(self.t, &self.x, h, rate, |t, x| monitor.pass(guards(t, x)));
+        self.method.attempt(self.t, &self.x, h, &mut rate, &mut |t, x| monitor.pass(guards(t, x)));
         let error = self.method.error(&self.sizes, self.accuracy.tolerance);
-        self.system.project(self.t + h, negative, &mut self.method.end);
+        system.project(self.t + h, negative, &mut self.method.end);
         self.monitor.end_step(guards(self.t + h, &self.method.end));
         error
     }
@@ -280,7 +301,7 @@ where
     fn accept(&mut self, t: S) {
         self.steps += 1;
         self.t = t;
-        self.x = self.method.end;
+        self.x.copy_from_slice(&self.method.end);
         if sizes::are_outgrown(&self.sizes, &self.x) {
             self.raise_sizes();
         }
@@ -294,4 +315,11 @@ where
         let is_seen = h.to_f64() > SMALLEST * self.length && self.t + h > self.t;
         if is_seen { Ok(()) } else { Err(Fault::StepTooSmall { t: self.t.to_f64(), h: h.to_f64() }) }
     }
+}
+
+/// The guards at time `t` (s) and state `x` in the branches `negative`.
+fn guards<S: Scalar>(system: &dyn Dynamics<S>, t: S, x: &[S], negative: &[S::Switch]) -> Vec<S> {
+    let mut value = vec![S::from_f64(0.0); negative.len()];
+    system.guards(t, x, negative, &mut value);
+    value
 }

@@ -4,25 +4,22 @@
 //! step. Out: that all keep their sides, that the step is too long to tell, or the first crossing; then the step that
 //! ends there. A guard that comes near to zero and turns back inside the step calls for a shorter step, which tells.
 
-use nalgebra::SVector;
-
 use super::Run;
 use crate::model::scalar::Scalar;
-use crate::model::system::System;
 
 /// A minimum inside the step below this part of the guard's variation is looked at closely.
 const NEAR: f64 = 0.25;
 
 /// What is known of the guards during the last step tried.
 #[derive(Debug)]
-pub struct GuardMonitor<S, const G: usize> {
+pub struct GuardMonitor<S> {
     tolerance: f64,
     /// The size of the step, s.
     h: S,
     /// At the start, at the substeps and at the end.
-    values: Vec<SVector<S, G>>,
+    values: Vec<Vec<S>>,
     /// The largest magnitude of each guard so far.
-    largest: [f64; G],
+    largest: Vec<f64>,
 }
 
 /// A foreseen change of sign.
@@ -47,27 +44,28 @@ pub enum Course<S> {
     Crosses(Crossing<S>),
 }
 
-impl<S: Scalar, const G: usize> GuardMonitor<S, G> {
-    pub fn new(tolerance: f64) -> Self {
-        Self { tolerance, h: S::from_f64(0.0), values: Vec::new(), largest: [0.0; G] }
+impl<S: Scalar> GuardMonitor<S> {
+    /// Of so many switches.
+    pub fn new(tolerance: f64, switches: usize) -> Self {
+        Self { tolerance, h: S::from_f64(0.0), values: Vec::new(), largest: vec![0.0; switches] }
     }
 
     /// Begins a step of size `h` (s).
-    pub fn begin_step(&mut self, value: SVector<S, G>, h: S) {
+    pub fn begin_step(&mut self, value: Vec<S>, h: S) {
         self.h = h;
         self.values.clear();
         self.end_step(value);
     }
 
     /// The guards at a substep.
-    pub fn pass(&mut self, value: SVector<S, G>) {
+    pub fn pass(&mut self, value: Vec<S>) {
         self.values.push(value);
     }
 
     /// The guards at an end of the step.
-    pub fn end_step(&mut self, value: SVector<S, G>) {
-        for k in 0..G {
-            self.largest[k] = self.largest[k].max(value[k].to_f64().abs());
+    pub fn end_step(&mut self, value: Vec<S>) {
+        for (largest, value) in self.largest.iter_mut().zip(&value) {
+            *largest = largest.max(value.to_f64().abs());
         }
         self.values.push(value);
     }
@@ -78,18 +76,20 @@ impl<S: Scalar, const G: usize> GuardMonitor<S, G> {
     }
 
     /// The guards at the end of the step.
-    pub fn end(&self) -> SVector<S, G> {
-        self.values[self.values.len() - 1]
+    pub fn end(&self) -> &[S] {
+        &self.values[self.values.len() - 1]
     }
 
     /// The switches whose guards are on the wrong side at the end of the step.
-    pub fn wrong(&self, negative: &[bool; G]) -> [bool; G] {
-        std::array::from_fn(|k| clearance(self.end()[k], negative[k]).to_f64() < -self.noise(k))
+    pub fn wrong(&self, negative: &[bool]) -> Vec<bool> {
+        let is_wrong = |(k, (&value, &negative))| clearance::<S>(value, negative).to_f64() < -self.noise(k);
+        self.end().iter().zip(negative).enumerate().map(is_wrong).collect()
     }
 
     /// How the guards have run under the branches `negative`.
-    pub fn course(&self, negative: &[bool; G]) -> Course<S> {
-        let courses: [Course<S>; G] = std::array::from_fn(|k| self.course_of(k, negative[k]));
+    pub fn course(&self, negative: &[bool]) -> Course<S> {
+        let courses: Vec<Course<S>> =
+            negative.iter().enumerate().map(|(k, &negative)| self.course_of(k, negative)).collect();
         if courses.iter().any(|course| matches!(course, Course::Unclear)) {
             return Course::Unclear;
         }
@@ -140,24 +140,21 @@ pub fn clearance<S: Scalar>(value: S, negative: bool) -> S {
     if negative { -value } else { value }
 }
 
-impl<S, Sys, const N: usize, const G: usize> Run<'_, S, Sys, N, G>
-where
-    S: Scalar<Switch = bool>,
-    Sys: System<S, N, G>,
-{
+impl<S: Scalar<Switch = bool>> Run<'_, S> {
     /// Shortens the step of size `h` (s) to `crossing`, or to one that turns out to be earlier; gives the step, which
     /// is the last one tried, and the switches whose guards are at zero there.
-    pub(super) fn locate(&mut self, mut h: S, mut crossing: Crossing<S>) -> (S, [bool; G]) {
-        for _ in 0..G {
+    pub(super) fn locate(&mut self, mut h: S, mut crossing: Crossing<S>) -> (S, Vec<bool>) {
+        let switches = self.negative.len();
+        for _ in 0..switches {
             let (zero, slope) = self.zero(h, crossing);
             h = zero;
             let wrong = self.monitor.wrong(&self.negative);
-            let Some(switch) = (0..G).find(|k| *k != crossing.switch && wrong[*k]) else { break };
+            let Some(switch) = (0..switches).find(|k| *k != crossing.switch && wrong[*k]) else { break };
             crossing = Crossing { switch, guess: S::from_f64(0.5) * h, slope };
         }
         let value = self.monitor.end();
         let is_at_zero = |k: usize| k == crossing.switch || value[k].to_f64().abs() <= self.monitor.noise(k);
-        (h, std::array::from_fn(is_at_zero))
+        (h, (0..switches).map(is_at_zero).collect())
     }
 
     /// The step of at most `h` (s) at whose end the guard of `crossing` vanishes to rounding, tried last, and the slope

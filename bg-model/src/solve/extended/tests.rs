@@ -1,7 +1,10 @@
 //! Problems with known solutions, in double-double to 25 digits.
 
+use nalgebra::SVector;
+
 use super::*;
-use crate::model::scalar::DoubleDouble;
+use crate::model::dynamics::Over;
+use crate::model::system::System;
 
 const CLOSE: Accuracy = Accuracy { columns: 10, tolerance: 1e-28 };
 
@@ -15,6 +18,11 @@ fn pi() -> DoubleDouble {
 
 fn span(t_end: f64) -> Span {
     Span { t0: 0.0, t_end }
+}
+
+/// A system over slices.
+fn of<const N: usize, const G: usize, Sys>(system: &Sys) -> Over<&Sys, N, G, 0> {
+    Over(system)
 }
 
 /// x'' = -w^2 x with w = 1 where x is positive, and 2 where it is negative.
@@ -42,7 +50,7 @@ impl<S: Scalar<Switch = bool>> System<S, 4, 0> for Kepler {
 }
 
 /// dx/dt = x^2 cos t, so that x = 1 / (1/x0 - sin t).
-fn growth(t: DoubleDouble, x: &SVector<DoubleDouble, 1>, dx: &mut SVector<DoubleDouble, 1>) {
+fn growth(t: DoubleDouble, x: &[DoubleDouble], dx: &mut [DoubleDouble]) {
     dx[0] = x[0] * x[0] * t.cos();
 }
 
@@ -61,11 +69,11 @@ impl<S: Scalar<Switch = bool>, F: Fn(S) -> S> System<S, 1, 1> for Timer<F> {
 #[test]
 fn the_order_is_twice_the_columns() {
     for (columns, h) in [(2, 0.02), (3, 0.02), (4, 0.02), (6, 0.03), (9, 0.2)] {
-        let mut method = Extrapolation::<DoubleDouble, 1>::new(columns as usize);
+        let mut method = Extrapolation::<DoubleDouble>::new(columns as usize, 1);
         let (t, x) = (number(0.4), number(0.8));
         let constant = number(1.0) / x + t.sin();
         let mut error = |h: DoubleDouble| {
-            method.attempt(t, &SVector::from([x]), h, growth, |_, _| {});
+            method.attempt(t, &[x], h, &mut growth, &mut |_, _| {});
             (method.end[0] - number(1.0) / (constant - (t + h).sin())).to_f64().abs()
         };
         let h = number(h);
@@ -77,10 +85,10 @@ fn the_order_is_twice_the_columns() {
 #[test]
 fn an_oscillator_is_followed_to_25_digits() {
     let instants = [0.0, 0.3, 7.0, 20.0];
-    let start = SVector::from([number(1.0), number(0.0)]);
+    let start = [number(1.0), number(0.0)];
     let frozen = Frozen(Lopsided);
     let mut seen = 0;
-    let finish = integrate(&frozen, &start, span(20.0), CLOSE, &instants, |t, x, []| {
+    let finish = integrate(&of::<2, 0, _>(&frozen), &start, span(20.0), CLOSE, &instants, &mut |t, x, _| {
         assert_eq!(t, number(instants[seen]));
         let error = (x[0] - t.cos()).to_f64().abs().max((x[1] + t.sin()).to_f64().abs());
         assert!(error < 1e-26, "{error:e} at {t:?}");
@@ -104,8 +112,8 @@ impl<S: Scalar<Switch = bool>, Sys: System<S, 2, 1>> System<S, 2, 0> for Frozen<
 fn a_planet_is_followed_to_25_digits() {
     let e = number(0.5);
     let one = number(1.0);
-    let start = SVector::from([one - e, number(0.0), number(0.0), ((one + e) / (one - e)).sqrt()]);
-    let finish = integrate(&Kepler, &start, span(20.0), CLOSE, &[], |_, _, _| {}).unwrap();
+    let start = [one - e, number(0.0), number(0.0), ((one + e) / (one - e)).sqrt()];
+    let finish = integrate(&of::<4, 0, _>(&Kepler), &start, span(20.0), CLOSE, &[], &mut |_, _, _| {}).unwrap();
     // Kepler's equation by Newton's method.
     let anomaly = (0..60).fold(number(20.0), |a, _| a - (a - e * a.sin() - number(20.0)) / (one - e * a.cos()));
     let expected = [anomaly.cos() - e, (one - e * e).sqrt() * anomaly.sin()];
@@ -115,9 +123,9 @@ fn a_planet_is_followed_to_25_digits() {
 
 #[test]
 fn switchings_are_located_to_25_digits() {
-    let start = SVector::from([number(1.0), number(0.0)]);
-    let finish =
-        integrate(&Lopsided, &start, span(12.0), CLOSE, &[6.0], |_, _, negative| assert!(!negative[0])).unwrap();
+    let start = [number(1.0), number(0.0)];
+    let mut is_positive = |_, _: &[DoubleDouble], negative: &[bool]| assert!(!negative[0]);
+    let finish = integrate(&of::<2, 1, _>(&Lopsided), &start, span(12.0), CLOSE, &[6.0], &mut is_positive).unwrap();
     // Half periods of pi where x is positive and pi/2 where it is negative.
     let expected = [0.5, 1.0, 2.0, 2.5, 3.5].map(|half_turns| pi() * number(half_turns));
     assert_eq!(finish.events.len(), expected.len());
@@ -133,7 +141,8 @@ fn switchings_are_located_to_25_digits() {
 #[test]
 fn the_scalar_may_be_f64() {
     let accuracy = Accuracy { columns: 6, tolerance: 1e-13 };
-    let finish = integrate(&Lopsided, &SVector::from([1.0, 0.0]), span(12.0), accuracy, &[], |_, _, _| {}).unwrap();
+    let finish =
+        integrate(&of::<2, 1, _>(&Lopsided), &[1.0, 0.0], span(12.0), accuracy, &[], &mut |_, _, _| {}).unwrap();
     let times: Vec<f64> = finish.events.iter().map(|event| event.t / std::f64::consts::PI).collect();
     assert_eq!(times.len(), 5);
     assert!(times.iter().zip([0.5, 1.0, 2.0, 2.5, 3.5]).all(|(t, expected)| (t - expected).abs() < 1e-12), "{times:?}");
@@ -145,7 +154,8 @@ fn a_short_visit_to_the_other_side_is_not_missed() {
     for depth in [1e-2, 1e-4, 1e-6] {
         let level = number(1.0) - number(depth);
         let timer = Timer(|t: DoubleDouble| level - (t - number(5.0)).cos());
-        let finish = integrate(&timer, &SVector::from([number(0.0)]), span(9.0), CLOSE, &[], |_, _, _| {}).unwrap();
+        let finish =
+            integrate(&of::<1, 1, _>(&timer), &[number(0.0)], span(9.0), CLOSE, &[], &mut |_, _, _| {}).unwrap();
         let half = level.acos();
         assert_eq!(finish.events.len(), 2, "{depth:e}");
         let error = |k: usize, t: DoubleDouble| (finish.events[k].t - t).to_f64().abs();
@@ -159,7 +169,7 @@ fn a_short_visit_to_the_other_side_is_not_missed() {
 #[test]
 fn a_guard_that_touches_zero_changes_nothing() {
     let timer = Timer(|t: DoubleDouble| number(1.0 + 1e-20) - (t - number(2.0)).cos());
-    let finish = integrate(&timer, &SVector::from([number(0.0)]), span(4.0), CLOSE, &[], |_, _, _| {}).unwrap();
+    let finish = integrate(&of::<1, 1, _>(&timer), &[number(0.0)], span(4.0), CLOSE, &[], &mut |_, _, _| {}).unwrap();
     let error = (finish.x[0] - number(4.0)).to_f64().abs();
     assert!(finish.events.is_empty() && error < 1e-27, "{error:e}");
 }
@@ -169,7 +179,7 @@ fn a_zero_guard_at_the_start_is_decided_by_what_follows() {
     for (sign, slower) in [(1.0, true), (-1.0, false)] {
         let timer = Timer(|t: f64| sign * t * t);
         let accuracy = Accuracy { columns: 3, tolerance: 1e-12 };
-        let finish = integrate(&timer, &SVector::from([0.0]), span(1.0), accuracy, &[], |_, _, _| {}).unwrap();
+        let finish = integrate(&of::<1, 1, _>(&timer), &[0.0], span(1.0), accuracy, &[], &mut |_, _, _| {}).unwrap();
         let expected = if slower { 1.0 } else { 2.0 };
         assert!((finish.x[0] - expected).abs() < 1e-12 && finish.events.is_empty(), "{finish:?}");
     }
@@ -191,7 +201,7 @@ impl System<f64, 1, 1> for Stuck {
 fn faults_say_what_and_when() {
     let run = |start: f64, columns, instants: &[f64]| {
         let accuracy = Accuracy { columns, tolerance: 1e-10 };
-        integrate(&Stuck, &SVector::from([start]), span(1.0), accuracy, instants, |_, _, _| {}).unwrap_err()
+        integrate(&of::<1, 1, _>(&Stuck), &[start], span(1.0), accuracy, instants, &mut |_, _, _| {}).unwrap_err()
     };
     assert!(matches!(run(2.0, 1, &[]), Fault::BadInput(_)));
     assert!(matches!(run(2.0, 4, &[0.5, 0.25]), Fault::BadInput(_)));
@@ -219,8 +229,11 @@ impl<S: Scalar<Switch = bool>> System<S, 4, 0> for Measured {
 fn another_unit_takes_the_same_steps() {
     let run = |unit: f64| {
         let start = SVector::from([0.5, 0.0, 0.0, 1.75]).map(|x| number(unit * x));
-        let finish = integrate(&Measured { unit }, &start, span(20.0), CLOSE, &[], |_, _, _| {}).unwrap();
-        (finish.steps, finish.rejected, finish.x.map(|x| x.times(1.0 / unit)))
+        let measured = Measured { unit };
+        let system = of::<4, 0, _>(&measured);
+        let finish = integrate(&system, start.as_slice(), span(20.0), CLOSE, &[], &mut |_, _, _| {}).unwrap();
+        let own: Vec<DoubleDouble> = finish.x.iter().map(|x| x.times(1.0 / unit)).collect();
+        (finish.steps, finish.rejected, own)
     };
     let expected = run(1.0);
     for exponent in [-40, -20, 20, 40] {

@@ -3,28 +3,28 @@
 //! In: what an observer of the run is told. Out: the derivatives of the outputs at each sample, and those of the states
 //! at the end.
 
-use nalgebra::SVector;
+use std::rc::Rc;
 
 use super::jump::jumped;
-use super::step::{Sloped, Steps, set_values};
+use super::step::{Steps, set_values};
 use super::{Direction, SensitivityError};
 use crate::model::assembly::AssemblyError;
+use crate::model::dynamics::Machine;
 use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
-use crate::model::system::{Model, switches};
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
 /// As many directions as the steps have slopes.
-pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
-    parts: Vec<Part<Li, N>>,
+pub(super) struct Follower {
+    parts: Vec<Part>,
     /// The system with slopes of nothing.
-    plain: Box<Li>,
+    plain: Rc<dyn Machine<Gradient>>,
     /// The slopes where the run has come to.
-    steps: Box<dyn Steps<N, G>>,
+    steps: Box<dyn Steps>,
     /// The last step: its start, its branches.
     start: f64,
-    negative: [bool; G],
+    negative: Vec<bool>,
     /// Where the run has come to.
     t: f64,
     has_begun: bool,
@@ -34,32 +34,30 @@ pub(super) struct Follower<Li, const N: usize, const G: usize, const M: usize> {
 }
 
 /// A few of the directions.
-struct Part<Li, const N: usize> {
+struct Part {
     /// The system in numbers that have slopes along them.
-    system: Box<Li>,
+    system: Rc<dyn Machine<Gradient>>,
     /// The state at the start.
-    begin: Sloped<N>,
+    begin: Vec<Gradient>,
     /// For each direction and output the derivatives at the samples.
     slopes: Vec<Vec<Vec<f64>>>,
 }
 
-impl<Li, const N: usize, const G: usize, const M: usize> Follower<Li, N, G, M>
-where
-    Li: Model<Gradient, N, G, M>,
-{
+impl Follower {
     /// From the start of a run at `t0` (s) along `directions`; `systems` have the slopes along a few of them each,
     /// `plain` along nothing, and `steps` are those of the same system along all of them.
     ///
     /// # Errors
     /// The start cannot be assembled.
     pub fn new(
-        systems: Vec<Box<Li>>,
-        plain: Box<Li>,
-        steps: Box<dyn Steps<N, G>>,
+        systems: Vec<Rc<dyn Machine<Gradient>>>,
+        plain: Rc<dyn Machine<Gradient>>,
+        steps: Box<dyn Steps>,
         (directions, outputs): (&[Direction], &[usize]),
         t0: f64,
     ) -> Result<Self, AssemblyError> {
-        let part = |(system, directions): (Box<Li>, &[Direction])| -> Result<Part<Li, N>, AssemblyError> {
+        let outputs_of_all = plain.description().outputs.len();
+        let part = |(system, directions): (Rc<dyn Machine<Gradient>>, &[Direction])| -> Result<Part, AssemblyError> {
             let mut begin = system.start()?;
             for (l, direction) in directions.iter().enumerate() {
                 if let Direction::Start(state) = direction {
@@ -68,15 +66,15 @@ where
                     begin[*state] = Gradient::new(begin[*state].value, slopes);
                 }
             }
-            Ok(Part { system, begin, slopes: vec![vec![Vec::new(); M]; directions.len()] })
+            Ok(Part { system, begin, slopes: vec![vec![Vec::new(); outputs_of_all]; directions.len()] })
         };
         let parts = systems.into_iter().zip(directions.chunks(WIDTH)).map(part).collect::<Result<_, _>>()?;
         Ok(Self {
+            negative: vec![false; plain.switches()],
             parts,
             plain,
             steps,
             start: t0,
-            negative: [false; G],
             t: t0,
             has_begun: false,
             error: None,
@@ -94,8 +92,8 @@ where
                 self.error = Some(SensitivityError::ImpactAtStart);
                 return false;
             }
-            let mut start = *begin;
-            system.project(Gradient::from_f64(t), switches(negative), &mut start);
+            let mut start = begin.clone();
+            system.project(Gradient::from_f64(t), negative, &mut start);
             set_values(&mut start, x);
             self.steps.set(place, &start);
         }
@@ -105,8 +103,8 @@ where
 
     /// The derivatives of the states where the run has come to, for each direction.
     pub fn states(&self) -> Vec<Vec<f64>> {
-        let of_part = |(place, part): (usize, &Part<Li, N>)| {
-            let now = self.steps.now(place, &[0.0; N]);
+        let of_part = |(place, part): (usize, &Part)| {
+            let now = self.steps.now(place, &vec![0.0; part.begin.len()]);
             let of = |l: usize| now.iter().map(|state| state.slopes()[l]).collect();
             (0..part.slopes.len()).map(of).collect::<Vec<_>>()
         };
@@ -127,10 +125,7 @@ where
     }
 }
 
-impl<Li, const N: usize, const G: usize, const M: usize> Observer for Follower<Li, N, G, M>
-where
-    Li: Model<Gradient, N, G, M>,
-{
+impl Observer for Follower {
     fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
         if self.error.is_some() {
             return;
@@ -145,8 +140,8 @@ where
         }
         for (place, Part { system, slopes, .. }) in self.parts.iter_mut().enumerate() {
             let reached = if is_inside { self.steps.looked_at(place, x) } else { self.steps.now(place, x) };
-            let mut outputs = SVector::repeat(Gradient::from_f64(0.0));
-            system.outputs(Gradient::from_f64(t), &reached, switches(negative), &mut outputs);
+            let mut outputs = vec![Gradient::from_f64(0.0); system.description().outputs.len()];
+            system.outputs(Gradient::from_f64(t), &reached, negative, &mut outputs);
             for &output in &self.outputs {
                 let of_output = outputs[output].slopes();
                 slopes.iter_mut().zip(of_output).for_each(|(columns, slope)| columns[output].push(slope));
@@ -165,8 +160,9 @@ where
         if !self.has_begun(start.t, start.x.as_slice(), negative) {
             return;
         }
-        (self.start, self.negative, self.t) = (start.t, *switches(negative), end.t);
-        if !self.steps.pass(switches(negative), start, end) {
+        (self.start, self.t) = (start.t, end.t);
+        self.negative.copy_from_slice(negative);
+        if !self.steps.pass(negative, start, end) {
             self.error = Some(SensitivityError::Inexact { t: start.t });
         }
     }

@@ -6,51 +6,44 @@
 //! from there the rate f+ leads back: S+ = dx+/dp - f+ dt*/dp. Without an impact that is S+ = S + (f - f+) dt*/dp.
 //! Source: E. N. Rozenwasser, R. Yusupov, Sensitivity of Automatic Control Systems (2000), chapter 3.
 
-use nalgebra::{DVector, SVector};
+use nalgebra::DVector;
 
-use super::step::Sloped;
-use crate::model::capability::Impacts;
-use crate::model::reactions::{Collision, impacts_in};
+use crate::model::dynamics::Dynamics;
+use crate::model::reactions::{Collision, impacts_of};
 use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
-use crate::model::system::{System, switches};
 use crate::solve::simulation::Switching;
 
 /// The slopes after the event of the state `x`, which has its value before it; `plain` is the same system with slopes
 /// of nothing. None where no guard passes through zero with a speed: the derivative does not exist there.
-pub(super) fn jumped<Sys, const N: usize, const G: usize>(
-    system: &Sys,
-    plain: &Sys,
-    x: &Sloped<N>,
+pub(super) fn jumped(
+    system: &dyn Dynamics<Gradient>,
+    plain: &dyn Dynamics<Gradient>,
+    x: &[Gradient],
     event: &Switching,
-) -> Option<Sloped<N>>
-where
-    Sys: System<Gradient, N, G>,
-{
+) -> Option<Vec<Gradient>> {
     let Switching { before, after, jumps, .. } = event;
-    let after_with =
-        |slope: &dyn Fn(usize) -> [f64; WIDTH]| SVector::from_fn(|i, _| Gradient::new(after.x[i], slope(i)));
+    let after_with = |slope: &dyn Fn(usize) -> [f64; WIDTH]| {
+        after.x.iter().enumerate().map(|(i, &value)| Gradient::new(value, slope(i))).collect()
+    };
     if !jumps && before.rate == after.rate {
         return Some(after_with(&|i| x[i].slopes()));
     }
     let delays = delays(system, plain, x, event)?;
     let along = |rate: &DVector<f64>, i: usize, l: usize| rate[i] * delays[l];
     let at_event = |i: usize| std::array::from_fn(|l| x[i].slopes()[l] + along(&before.rate, i, l));
-    let moved = SVector::from_fn(|i, _| Gradient::new(before.x[i], at_event(i)));
+    let moved: Vec<_> = (0..x.len()).map(|i| Gradient::new(before.x[i], at_event(i))).collect();
     let moved = struck(system, event, Gradient::new(before.t, delays), moved);
     Some(after_with(&|i| std::array::from_fn(|l| moved[i].slopes()[l] - along(&after.rate, i, l))))
 }
 
 /// How much later the event is, s per unit of each direction.
-fn delays<Sys, const N: usize, const G: usize>(
-    system: &Sys,
-    plain: &Sys,
-    x: &Sloped<N>,
+fn delays(
+    system: &dyn Dynamics<Gradient>,
+    plain: &dyn Dynamics<Gradient>,
+    x: &[Gradient],
     event: &Switching,
-) -> Option<[f64; WIDTH]>
-where
-    Sys: System<Gradient, N, G>,
-{
+) -> Option<[f64; WIDTH]> {
     let (k, speed) = passed(plain, event)?;
     let delays = guards(system, event, 0.0, x)[k].slopes().map(|slope| -slope / speed);
     delays.iter().all(|delay| delay.is_finite()).then_some(delays)
@@ -58,48 +51,39 @@ where
 
 /// The guard that decides on the instant, and how fast it passes through zero, in its unit per s. `plain` has slopes of
 /// nothing.
-pub(super) fn passed<Sys, const N: usize, const G: usize>(plain: &Sys, event: &Switching) -> Option<(usize, f64)>
-where
-    Sys: System<Gradient, N, G>,
-{
+pub(super) fn passed(plain: &dyn Dynamics<Gradient>, event: &Switching) -> Option<(usize, f64)> {
     let Switching { before, reached, .. } = event;
-    let flow = SVector::from_fn(|i, _| Gradient::new(before.x[i], [before.rate[i]; WIDTH]));
-    let by_time = guards(plain, event, 1.0, &flow);
-    let mut speeds = (0..G).filter(|&k| reached[k]).map(|k| (k, by_time[k].slopes()[0]));
+    let flow = before.x.iter().zip(&before.rate).map(|(&x, &rate)| Gradient::new(x, [rate; WIDTH]));
+    let by_time = guards(plain, event, 1.0, &flow.collect::<Vec<_>>());
+    let mut speeds = (0..by_time.len()).filter(|&k| reached[k]).map(|k| (k, by_time[k].slopes()[0]));
     speeds.find(|(_, speed)| speed.is_finite() && *speed != 0.0)
 }
 
 /// The guards at the end of the step that leads to the event, at the state `x` and where time has these slopes.
-pub(super) fn guards<Sys, const N: usize, const G: usize>(
-    system: &Sys,
+pub(super) fn guards(
+    system: &dyn Dynamics<Gradient>,
     event: &Switching,
     by_time: f64,
-    x: &Sloped<N>,
-) -> SVector<Gradient, G>
-where
-    Sys: System<Gradient, N, G>,
-{
-    let mut guards = SVector::repeat(Gradient::from_f64(0.0));
-    system.guards(Gradient::new(event.before.t, [by_time; WIDTH]), x, switches(&event.negative_before), &mut guards);
+    x: &[Gradient],
+) -> Vec<Gradient> {
+    let mut guards = vec![Gradient::from_f64(0.0); system.switches()];
+    system.guards(Gradient::new(event.before.t, [by_time; WIDTH]), x, &event.negative_before, &mut guards);
     guards
 }
 
 /// The state `x` at the instant `t` (s) after the impact of an event, if it has one.
-pub(super) fn struck<Sys, const N: usize, const G: usize>(
-    system: &Sys,
+pub(super) fn struck(
+    system: &dyn Dynamics<Gradient>,
     event: &Switching,
     t: Gradient,
-    mut x: Sloped<N>,
-) -> Sloped<N>
-where
-    Sys: System<Gradient, N, G>,
-{
+    mut x: Vec<Gradient>,
+) -> Vec<Gradient> {
     let Switching { negative_before, reached, left, jumps, .. } = event;
-    if let (true, Some(impacts)) = (*jumps, system.impacts()) {
+    if let (true, Some(stops)) = (*jumps, system.stops()) {
         let closed = |k: usize| reached[k] || !negative_before[k];
         let is_low = |k: usize, _: f64, _: bool| !left[k];
-        let mut collision = Collision::new(impacts.stops(), impacts.kept());
-        collision.strike(&impacts_in(impacts), (t, x.as_mut_slice()), negative_before, closed, is_low);
+        let mut collision = Collision::new(stops, system.kept_of_stops());
+        collision.strike(&impacts_of(system), (t, &mut x), negative_before, closed, is_low);
     }
     x
 }

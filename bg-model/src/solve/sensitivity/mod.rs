@@ -1,6 +1,6 @@
 //! Derivatives of a run by parameters and start values, exact to the accuracy of the run, through events.
 //!
-//! In: a [`Mechanism`], what is asked of a run, directions. Out: the run, with the derivative of each output at each
+//! In: a model, a [`Mechanism`] for one, what is asked of a run, directions. Out: the run, with the derivative of each output at each
 //! sample along each direction. Method: the model calculates with numbers that have slopes
 //! ([`Gradient`](crate::scalar::Gradient)), beside the run itself, whose steps, events and bytes are those without
 //! derivatives. The start pose, the rates, projections, guards, impacts and outputs are all differentiated; at events
@@ -38,27 +38,30 @@ mod follow;
 mod jump;
 mod step;
 
+use std::rc::Rc;
+
 use thiserror::Error;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::dynamics::shared;
-use crate::model::mechanism::{LiftedVisitor, Mechanism};
+use crate::model::description::Description;
+use crate::model::dynamics::Machine;
+use crate::model::mechanism::{Followed, Joinable, Mechanism, SideBySide};
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::Gradient;
-use crate::model::scalar::gradient::GradientIn;
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::lanes::{Avx2, Avx512};
 #[cfg(not(target_arch = "x86_64"))]
 use crate::model::scalar::slopes::Eight;
+#[cfg(target_arch = "x86_64")]
+use crate::model::scalar::slopes::Everywhere;
 use crate::model::scalar::slopes::{Slopes, WIDTH};
-use crate::model::system::Model;
 use crate::solve::integrator::{Integrator, Point, Scale};
 use crate::solve::run::{Request, RunError, Trajectory, observed};
 use crate::solve::simulation::{Observer, Switching};
 pub use adjoint::{Gradients, Measured, Objective, gradient, gradient_within};
 pub use differences::{DifferencesError, differences};
 use follow::Follower;
-use step::{Stepper, Steps, joined as joined_slopes};
+use step::Stepper;
 
 /// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's
 /// own steps, and the slopes would no longer be the derivatives of these.
@@ -79,7 +82,15 @@ impl Direction {
     /// # Errors
     /// There is none of that name.
     pub fn parameter<Me: Mechanism>(name: &str) -> Result<Self, ParameterError> {
-        let index = Me::Parameters::table().iter().position(|parameter| parameter.name == name);
+        Self::of(Me::describe(), name)
+    }
+
+    /// The parameter called `name` of the model that this describes.
+    ///
+    /// # Errors
+    /// There is none of that name.
+    pub fn of(model: &Description, name: &str) -> Result<Self, ParameterError> {
+        let index = model.parameters.iter().position(|parameter| parameter.name == name);
         index.map(Self::Parameter).ok_or_else(|| ParameterError::Unknown { name: name.to_owned() })
     }
 
@@ -88,6 +99,14 @@ impl Direction {
     pub fn parameters<Me: Mechanism>() -> Vec<Self> {
         (0..Me::Parameters::table().len()).map(Self::Parameter).collect()
     }
+}
+
+/// The parameters of these names, of the model that this describes, as directions.
+///
+/// # Errors
+/// There is none of a name.
+pub fn directions(model: &Description, names: &[&str]) -> Result<Vec<Direction>, ParameterError> {
+    names.iter().map(|name| Direction::of(model, name)).collect()
 }
 
 /// A run with its derivatives.
@@ -170,42 +189,42 @@ pub enum SensitivityError {
 ///
 /// # Errors
 /// [`SensitivityError`].
-pub fn sensitivities<Me: Mechanism>(
-    model: &Me,
+pub fn sensitivities(
+    model: &dyn Followed,
     request: &Request,
     directions: &[Direction],
 ) -> Result<Sensitivities, SensitivityError> {
-    let all: Vec<usize> = (0..Me::describe().outputs.len()).collect();
-    sensitivities_of(model, request, directions, &all)
+    let all: Vec<usize> = (0..model.description().outputs.len()).collect();
+    sensitivities_of(model, &model.values(), request, directions, &all)
 }
 
-/// As [`sensitivities`], with the derivatives of these outputs alone, by their places in the model's description: of
-/// the others [`Sensitivities::of`] is empty.
+/// As [`sensitivities`], of the model with these values of its parameters, in the order of its description, with the
+/// derivatives of these outputs alone, by their places there: of the others [`Sensitivities::of`] is empty.
 ///
 /// # Errors
 /// [`SensitivityError`].
 ///
 /// # Panics
-/// There is no such output.
-pub fn sensitivities_of<Me: Mechanism>(
-    model: &Me,
+/// There is no value for a parameter, no such output.
+pub fn sensitivities_of(
+    model: &dyn Followed,
+    values: &[f64],
     request: &Request,
     directions: &[Direction],
     outputs: &[usize],
 ) -> Result<Sensitivities, SensitivityError> {
-    let values = model.parameters().values();
-    let following = Following { request, directions, outputs, values };
+    let following = Following { request, directions, outputs, values, plain: model.tuned(values)? };
     // What has no more directions than fit into a vector of AVX2 gains nothing by wider ones.
     #[cfg(target_arch = "x86_64")]
     if directions.len() > Avx2::LANES && Avx512::is_at_hand() {
-        return model.visit_lifted::<Gradient, GradientIn<Avx512>, _>(following);
+        return following.followed::<Avx512, _>(model);
     } else if Avx2::is_at_hand() {
-        return model.visit_lifted::<Gradient, GradientIn<Avx2>, _>(following);
+        return following.followed::<Avx2, _>(model);
     }
     #[cfg(target_arch = "x86_64")]
-    return model.visit_lifted::<Gradient, Gradient, _>(following);
+    return following.followed::<Everywhere, _>(model);
     #[cfg(not(target_arch = "x86_64"))]
-    model.visit_lifted::<Gradient, GradientIn<Eight>, _>(following)
+    following.followed::<Eight, _>(model)
 }
 
 /// What is done with the model.
@@ -213,10 +232,40 @@ struct Following<'a> {
     request: &'a Request,
     directions: &'a [Direction],
     outputs: &'a [usize],
-    values: Vec<f64>,
+    values: &'a [f64],
+    /// The model without slopes.
+    plain: Rc<dyn Machine>,
 }
 
 impl Following<'_> {
+    /// Makes the run, followed along as many directions at a time as the vectors `V` have places.
+    fn followed<V: Slopes, Mo: Joinable<V> + ?Sized>(&self, model: &Mo) -> Result<Sensitivities, SensitivityError> {
+        let start = self.plain.start()?;
+        let scale = Scale::new(&self.request.tolerances(), start.len());
+        let is_estimated = self.request.method != Integrator::Dop853;
+        let follower = |directions: &[Direction]| -> Result<Follower, SensitivityError> {
+            let values: Vec<_> = directions.chunks(WIDTH).map(|few| sloped(self.values, few)).collect();
+            let SideBySide { each, all } = model.side_by_side(&values)?;
+            let sizes: Vec<f64> = directions.iter().map(|&of| self.size(of, &start)).collect();
+            let steps = Stepper::<V>::new(all, start.len(), is_estimated, (scale.clone(), &sizes));
+            let plain = model.lifted(&sloped(self.values, &[]))?;
+            Ok(Follower::new(each, plain, Box::new(steps), (directions, self.outputs), 0.0)?)
+        };
+        let followers = self.directions.chunks(V::LANES).map(follower).collect::<Result<Vec<_>, _>>()?;
+        self.run(Followers(followers))
+    }
+
+    /// Makes the run that these follow.
+    fn run(&self, mut followers: Followers<Follower>) -> Result<Sensitivities, SensitivityError> {
+        let outcome = observed(&*self.plain, self.request, &mut followers);
+        let Followers(mut followers) = followers;
+        followers.iter_mut().try_for_each(Follower::check)?;
+        let trajectory = outcome?;
+        let states = followers.iter().flat_map(Follower::states).collect();
+        let slopes = followers.into_iter().flat_map(Follower::slopes).collect();
+        Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
+    }
+
     /// The size of a direction: the change of it by which a slope may move a state as far from the truth as a step may.
     fn size(&self, direction: Direction, start: &[f64]) -> f64 {
         let value = match direction {
@@ -234,69 +283,6 @@ fn sloped(values: &[f64], directions: &[Direction]) -> Vec<Gradient> {
     };
     values.iter().enumerate().map(|(index, &value)| Gradient::new(value, slope(index))).collect()
 }
-
-/// The steps are in the vectors `V`.
-impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Following<'_> {
-    type Output = Result<Sensitivities, SensitivityError>;
-
-    fn visit<Mo, Li, Fa, const N: usize, const G: usize, const M: usize>(
-        self,
-        model: &Mo,
-        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
-        lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
-        joined: impl Fn(&[&Li], fn(&[Gradient]) -> GradientIn<V>) -> Fa,
-    ) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M> + Clone + 'static,
-        Li: Model<Gradient, N, G, M> + 'static,
-        Fa: Model<GradientIn<V>, N, G, M> + 'static,
-    {
-        self.followed(V::LANES, model, &lifted, &|models, scale, sizes| {
-            let is_estimated = self.request.method != Integrator::Dop853;
-            Box::new(Stepper::<V, Fa, N>::new(Box::new(joined(models, joined_slopes)), is_estimated, (scale, sizes)))
-        })
-    }
-}
-
-impl Following<'_> {
-    /// Makes the run, followed along `lanes` directions at a time by what `steps` makes. Compiled once for each model,
-    /// whatever the vectors.
-    fn followed<Mo, Li, const N: usize, const G: usize, const M: usize>(
-        &self,
-        lanes: usize,
-        model: &Mo,
-        lifted: &dyn Fn(&[Gradient]) -> Result<Li, ParameterError>,
-        steps: &MakesSteps<'_, Li, N, G>,
-    ) -> Result<Sensitivities, SensitivityError>
-    where
-        Mo: Model<f64, N, G, M> + Clone + 'static,
-        Li: Model<Gradient, N, G, M>,
-    {
-        let start = model.start()?;
-        let scale = Scale::new(&self.request.tolerances(), N);
-        let system = |directions: &[Direction]| lifted(&sloped(&self.values, directions)).map(Box::new);
-        let follower = |directions: &[Direction]| -> Result<Follower<Li, N, G, M>, SensitivityError> {
-            let systems = directions.chunks(WIDTH).map(system).collect::<Result<Vec<_>, _>>()?;
-            let sizes: Vec<f64> = directions.iter().map(|&of| self.size(of, start.as_slice())).collect();
-            let models: Vec<&Li> = systems.iter().map(|system| &**system).collect();
-            let steps = steps(&models, scale.clone(), &sizes);
-            Ok(Follower::new(systems, system(&[])?, steps, (directions, self.outputs), 0.0)?)
-        };
-        let followers = self.directions.chunks(lanes).map(follower).collect::<Result<Vec<_>, _>>()?;
-        let mut followers = Followers(followers);
-        let outcome = observed(&*shared(model.clone()), self.request, &mut followers);
-        let Followers(mut followers) = followers;
-        followers.iter_mut().try_for_each(Follower::check)?;
-        let trajectory = outcome?;
-        let states = followers.iter().flat_map(Follower::states).collect();
-        let slopes = followers.into_iter().flat_map(Follower::slopes).collect();
-        Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
-    }
-}
-
-/// Makes steps of the systems that have a few directions each, measured by the scale of the states and the size of each
-/// direction.
-type MakesSteps<'a, Li, const N: usize, const G: usize> = dyn Fn(&[&Li], Scale, &[f64]) -> Box<dyn Steps<N, G>> + 'a;
 
 /// Several observers of one kind.
 struct Followers<O>(Vec<O>);

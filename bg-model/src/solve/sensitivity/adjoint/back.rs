@@ -13,8 +13,7 @@
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
-use super::super::step::Sloped;
-use super::lifted::{Lifted, weighted};
+use super::lifted::{Lifted, Sloped, weighted};
 use crate::model::capability::Reversed;
 use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::Model;

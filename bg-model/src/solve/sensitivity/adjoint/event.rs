@@ -10,8 +10,8 @@
 use nalgebra::SVector;
 
 use super::super::jump::{guards, passed, struck};
-use super::super::step::Sloped;
-use super::lifted::Lifted;
+use super::lifted::{Lifted, Sloped};
+use crate::model::dynamics::Over;
 use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
 use crate::model::system::{Model, values};
@@ -35,12 +35,12 @@ where
     }
     let [x, rate, rate_after] = [&before.x, &before.rate, &after.rate].map(|of| values::<N>(of.as_slice()));
     let given: Sloped<N> = x.map(Gradient::from_f64);
-    let (guard, speed) = passed(lifted.plain(), event)?;
+    let (guard, speed) = passed(&over(lifted.plain()), event)?;
     let mut by_instant = gained - weights.dot(rate_after);
     if *jumps {
         let after = *weights;
         let weighted = |system: &Li, t: Gradient, x: &Sloped<N>| {
-            let struck = struck(system, event, t, *x);
+            let struck = struck(&over(system), event, t, x.as_slice().to_vec());
             std::array::from_fn(|l| (0..N).map(|i| after[i] * struck[i].slopes()[l]).sum())
         };
         let t = Gradient::from_f64(before.t);
@@ -50,7 +50,16 @@ where
     }
     by_instant += weights.dot(rate);
     let later = -by_instant / speed;
-    *weights += lifted.by_states(x, |plain, x| guards(plain, event, 0.0, x)[guard].slopes()) * later;
-    lifted.add_by_parameters(later, |system| guards(system, event, 0.0, &given)[guard].slopes());
+    let slopes = |system: &Li, x: &Sloped<N>| guards(&over(system), event, 0.0, x.as_slice())[guard].slopes();
+    *weights += lifted.by_states(x, slopes) * later;
+    lifted.add_by_parameters(later, |system| slopes(system, &given));
     later.is_finite().then_some(())
+}
+
+/// A system over slices.
+fn over<Li, const N: usize, const G: usize, const M: usize>(system: &Li) -> Over<&Li, N, G, M>
+where
+    Li: Model<Gradient, N, G, M>,
+{
+    Over(system)
 }

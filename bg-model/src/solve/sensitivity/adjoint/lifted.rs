@@ -7,10 +7,12 @@ use core::convert::Infallible;
 
 use nalgebra::SVector;
 
-use super::super::step::Sloped;
 use super::super::{Direction, SensitivityError};
 use crate::model::scalar::Gradient;
 use crate::model::scalar::slopes::WIDTH;
+
+/// A state with slopes.
+pub(super) type Sloped<const N: usize> = SVector<Gradient, N>;
 
 /// The models, and how the objective depends on each direction, as far as it was followed.
 pub(super) struct Lifted<Li> {
