@@ -7,7 +7,7 @@ bond_graph!(file "tests/accepted/coil.bond");
 
 #[test]
 fn a_file_has_a_graph_as_a_call_has() {
-    let model = Coil::new(CoilParameters { inductance: 0.5, ..Default::default() }).expect("a coil");
+    let model = Coil::new(CoilParameters { inductance: 0.5 }).expect("a coil");
     let run = Simulation::new(&model).every(1.0).until(1.0).run().expect("a run");
     // L di/dt = 2 V.
     assert!((run["current"][1] - 4.0).abs() < 1e-12);

@@ -4,7 +4,6 @@
 use bg_model::bond_graph;
 use bg_model::capability::Storages;
 use bg_model::description::StateKind;
-use bg_model::dynamics::Dynamics;
 use bg_model::extended::{self, Accuracy};
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::{Liftable, Mechanism, ModelVisitor};
