@@ -2,7 +2,7 @@
 //!
 //! | module | question it answers |
 //! |---|---|
-//! | [`file`] | what stands in a file: its text, its graphs |
+//! | [`file`](mod@file) | what stands in a file: its text, its graphs |
 //! | [`faults`] | what is wrong with a text, as a reader or a program sees it |
 //! | [`maker`] | what makes the models of a graph, for the workbench |
 
