@@ -109,7 +109,9 @@ impl<S: Scalar> Interpreted<S> {
         let Description { parameters: table, inputs: named, .. } = blueprint.description();
         table.iter().zip(&parameters).try_for_each(|(info, &value)| info.check(value))?;
         if let Some(program) = &blueprint.programs.required {
-            require(blueprint.statics.required, &of_parameters(program, &parameters, &[], None))?;
+            let mut required = vec![0.0; program.code.results()];
+            of_parameters(program, &parameters, &[], None, &mut required);
+            require(blueprint.statics.required, &required)?;
         }
         let inputs: Vec<Input> = (0..named.len()).map(|index| inputs.get(index).cloned().unwrap_or_default()).collect();
         let decided = decide(blueprint, &parameters, &inputs);
@@ -244,20 +246,21 @@ fn decide(blueprint: &Arc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> D
     decided
 }
 
-/// What a program of parameters and unknowns gives.
+/// Writes what a program of parameters and unknowns gives.
 pub(crate) fn of_parameters<S: Scalar>(
     Alone { constants, code }: &Alone,
     values: &[S],
     unknowns: &[S],
     decided: Option<&Decided>,
-) -> Vec<S> {
+    to: &mut [S],
+) {
     let symbol = |symbol: Symbol| match symbol {
         Symbol::Parameter(index) => values[index as usize],
         Symbol::Unknown(index) => unknowns.get(index as usize).copied().unwrap_or(S::from_f64(0.0)),
         symbol => of_decided(symbol, decided),
     };
     let constants = constants.once(&[], symbol);
-    code.once(&constants, symbol)
+    code.evaluate(&mut code.row(&constants), symbol, &[], to);
 }
 
 fn of_decided<S: Scalar>(symbol: Symbol, decided: Option<&Decided>) -> S {

@@ -233,7 +233,9 @@ impl<S: Scalar> Machine<S> for Interpreted<S> {
     }
 
     fn start(&self) -> Result<Vec<S>, AssemblyError> {
-        Ok(start(self, self)?.x)
+        let mut x = vec![S::from_f64(0.0); self.states()];
+        start(self, self, &mut x)?;
+        Ok(x)
     }
 
     fn redundant(&self) -> Vec<Redundancy> {
@@ -245,7 +247,11 @@ impl<S: Scalar> Machine<S> for Interpreted<S> {
     }
 
     fn impulse_energy(&self) -> Result<S, AssemblyError> {
-        if self.held().is_none() { Ok(S::from_f64(0.0)) } else { Ok(start(self, self)?.lost) }
+        if self.held().is_none() {
+            Ok(S::from_f64(0.0))
+        } else {
+            start(self, self, &mut vec![S::from_f64(0.0); self.states()])
+        }
     }
 
     fn outputs(&self, t: S, x: &[S], negative: &[S::Switch], y: &mut [S]) {
@@ -289,8 +295,8 @@ impl<S: Scalar> Machine<S> for Interpreted<S> {
 }
 
 impl<S: Scalar> Interpreted<S> {
-    /// What a routine of the start gives, for values of the parameters and unknowns.
-    fn of_start<T: Scalar>(&self, routine: StartRoutine, values: &[T], unknowns: &[T]) -> Vec<T> {
+    /// Writes what a routine of the start gives, for values of the parameters and unknowns.
+    fn of_start<T: Scalar>(&self, routine: StartRoutine, values: &[T], unknowns: &[T], to: &mut [T]) {
         let programs = self.programs();
         let program = match routine {
             StartRoutine::Guesses => Some(&programs.guesses),
@@ -300,7 +306,9 @@ impl<S: Scalar> Interpreted<S> {
             StartRoutine::Sides => programs.sides.as_ref(),
             StartRoutine::Required => programs.required_at_start.as_ref(),
         };
-        program.map_or_else(Vec::new, |program| of_parameters(program, values, unknowns, Some(&self.decided)))
+        if let Some(program) = program {
+            of_parameters(program, values, unknowns, Some(&self.decided), to);
+        }
     }
 }
 
@@ -309,12 +317,12 @@ impl<S: Scalar> Starting<S> for Interpreted<S> {
         self.blueprint.statics.start
     }
 
-    fn in_numbers(&self, routine: StartRoutine, unknowns: &[f64]) -> Vec<f64> {
-        self.of_start(routine, &self.parameters, unknowns)
+    fn in_numbers(&self, routine: StartRoutine, unknowns: &[f64], to: &mut [f64]) {
+        self.of_start(routine, &self.parameters, unknowns, to);
     }
 
-    fn in_scalars(&self, routine: StartRoutine, unknowns: &[S]) -> Vec<S> {
-        self.of_start(routine, &self.values, unknowns)
+    fn in_scalars(&self, routine: StartRoutine, unknowns: &[S], to: &mut [S]) {
+        self.of_start(routine, &self.values, unknowns, to);
     }
 }
 

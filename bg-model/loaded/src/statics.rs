@@ -141,6 +141,7 @@ const fn operations(of: bg_compiler::program::Counts) -> OperationCount {
 
 fn start(of: &tables::Start) -> StartTable {
     StartTable {
+        unknowns: of.unknowns,
         gaps: each(&of.gaps, |of| Gap { joint: text(&of.joint), component: of.component, unit: text(&of.unit) }),
         speeds: each(&of.speeds, |&speed| speed),
         required: each(&of.required, requirement),

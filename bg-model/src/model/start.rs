@@ -4,14 +4,15 @@
 //! the start state; on which sides roots are closed; which rows of joints that close loops take part. Whoever evaluates
 //! the routines, the start has the same bits.
 
+use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::model::assembly::{AssemblyError, Gap, close};
 use crate::model::dynamics::Dynamics;
 use crate::model::holding::Redundancy;
 use crate::model::nearest::lifted;
+pub use crate::model::reactions::share;
 use crate::model::reactions::{self, fit};
-pub use crate::model::reactions::{Started, share};
 use crate::model::requirement::{Requirement, require};
 use crate::model::scalar::Scalar;
 
@@ -35,6 +36,8 @@ pub enum StartRoutine {
 /// What a start is checked against, and what may move.
 #[derive(Clone, Copy, Debug)]
 pub struct StartTable {
+    /// How many unknowns there are.
+    pub unknowns: usize,
     /// The gaps to be closed.
     pub gaps: &'static [Gap],
     /// The unknowns that are velocities; the others are of the pose.
@@ -52,33 +55,44 @@ pub trait Starting<S: Scalar = f64> {
     /// The tables.
     fn table(&self) -> StartTable;
 
-    /// What a routine gives for these unknowns; for none it takes zeros.
-    fn in_numbers(&self, routine: StartRoutine, unknowns: &[f64]) -> Vec<f64>;
+    /// Writes what a routine gives for these unknowns; the guesses take none.
+    ///
+    /// # Panics
+    /// There is not one place for each number.
+    fn in_numbers(&self, routine: StartRoutine, unknowns: &[f64], to: &mut [f64]);
 
     /// The same in the scalar.
-    fn in_scalars(&self, routine: StartRoutine, unknowns: &[S]) -> Vec<S>;
+    ///
+    /// # Panics
+    /// As [`Starting::in_numbers`].
+    fn in_scalars(&self, routine: StartRoutine, unknowns: &[S], to: &mut [S]);
+}
+
+/// What is written into so many places.
+fn listed<S: Scalar>(count: usize, write: impl FnOnce(&mut [S])) -> Vec<S> {
+    let mut list = vec![S::from_f64(0.0); count];
+    write(&mut list);
+    list
 }
 
 /// The unknowns: the guesses, those of the pose moved until the joints are closed.
 fn closed<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<f64>, AssemblyError> {
-    let StartTable { gaps, speeds, required, .. } = of.table();
-    let guess = of.in_numbers(StartRoutine::Guesses, &[]);
-    let places: Vec<usize> = (0..guess.len()).filter(|place| !speeds.contains(place)).collect();
+    let StartTable { unknowns, gaps, speeds, required, .. } = of.table();
+    let guess = listed(unknowns, |to| of.in_numbers(StartRoutine::Guesses, &[], to));
+    let places: Vec<usize> = (0..unknowns).filter(|place| !speeds.contains(place)).collect();
     let whole = |pose: &[f64]| {
         let mut unknowns = guess.clone();
         places.iter().zip(pose).for_each(|(&place, &value)| unknowns[place] = value);
         unknowns
     };
-    let routine = |routine, pose: &[f64], values: &mut [f64]| {
-        values.copy_from_slice(&of.in_numbers(routine, &whole(pose)));
-    };
     let pose: Vec<f64> = places.iter().map(|&place| guess[place]).collect();
+    let routine = |routine, pose: &[f64], to: &mut [f64]| of.in_numbers(routine, &whole(pose), to);
     let pose = close(&pose, gaps, &|pose, gaps| routine(StartRoutine::Gaps, pose, gaps), &|pose, sizes| {
         routine(StartRoutine::GapSizes, pose, sizes)
     })?;
     let unknowns = whole(&pose);
     if !required.is_empty() {
-        require(required, &of.in_numbers(StartRoutine::Required, &unknowns))?;
+        require(required, &listed(required.len(), |to| of.in_numbers(StartRoutine::Required, &unknowns, to)))?;
     }
     Ok(unknowns)
 }
@@ -86,43 +100,51 @@ fn closed<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<f64>, AssemblyError> {
 /// The unknowns in the scalar: with what they are more than numbers, as derivatives.
 fn unknowns<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<S>, AssemblyError> {
     let found = closed(of)?;
-    let guess = of.in_scalars(StartRoutine::Guesses, &[]);
-    Ok(lifted(&guess, &found, &|unknowns| of.in_scalars(StartRoutine::Gaps, unknowns)))
+    let guess = listed(found.len(), |to| of.in_scalars(StartRoutine::Guesses, &[], to));
+    let gaps = |unknowns: &[S]| listed(of.table().gaps.len(), |to| of.in_scalars(StartRoutine::Gaps, unknowns, to));
+    Ok(lifted(&guess, &found, &gaps))
 }
 
 /// The state at the closed start pose, guessed velocities as they are.
 ///
 /// # Errors
 /// The pose does not close.
-pub fn pose<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<S>, AssemblyError> {
-    Ok(of.in_scalars(StartRoutine::State, &unknowns(of)?))
+fn pose<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Vec<S>, AssemblyError> {
+    let unknowns = unknowns(of)?;
+    Ok(listed(system.states(), |to| of.in_scalars(StartRoutine::State, &unknowns, to)))
 }
 
-/// The start state of a model, and what it took to make it fit.
+/// Writes the start state of a model. The kinetic energy that impulses have taken to make it fit, J. Allocates where
+/// there are joints.
 ///
 /// # Errors
 /// The pose does not close, or the velocities do not fit.
-pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Started<S>, AssemblyError> {
+pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut [S]) -> Result<S, AssemblyError> {
+    let unknowns = unknowns(of)?;
     if system.held().is_none() {
-        return Ok(Started { x: pose(of)?, lost: S::from_f64(0.0) });
+        of.in_scalars(StartRoutine::State, &unknowns, x);
+        return Ok(S::from_f64(0.0));
     }
     let StartTable { speeds, impulse, .. } = of.table();
-    let state = |unknowns: &[S]| of.in_scalars(StartRoutine::State, unknowns);
-    fit(system, &unknowns(of)?, speeds, &state, impulse)
+    let state = |unknowns: &[S]| listed(system.states(), |to| of.in_scalars(StartRoutine::State, unknowns, to));
+    let started = fit(system, &unknowns, speeds, &state, impulse)?;
+    x.copy_from_slice(&started.x);
+    Ok(started.lost)
 }
 
 /// The signs of the roots in the closed start pose; 1 where there is none.
 pub fn sides<S: Scalar>(of: &dyn Starting<S>) -> Vec<f64> {
     let sign = |side: f64| if side < 0.0 { -1.0 } else { 1.0 };
-    match closed(of) {
-        Ok(unknowns) => of.in_numbers(StartRoutine::Sides, &unknowns).into_iter().map(sign).collect(),
-        Err(_) => alloc::vec![1.0; of.table().sides],
+    let mut sides = vec![1.0; of.table().sides];
+    if let Ok(unknowns) = closed(of) {
+        of.in_numbers(StartRoutine::Sides, &unknowns, &mut sides);
     }
+    sides.into_iter().map(sign).collect()
 }
 
 /// Which rows of joints that close loops take part: 1 for each that does.
 pub fn kept(of: &dyn Starting, system: &dyn Dynamics) -> Vec<f64> {
-    reactions::kept(system, pose(of).ok())
+    reactions::kept(system, pose(of, system).ok())
 }
 
 /// What the start pose decides, in the array of a model that has so many.
@@ -135,5 +157,5 @@ pub fn decided<const K: usize>(of: Vec<f64>) -> [f64; K] {
 
 /// The joints that hold what others hold already, in all poses.
 pub fn redundant<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Vec<Redundancy> {
-    pose(of).map_or_else(|_| Vec::new(), |pose| reactions::redundant(system, &pose))
+    pose(of, system).map_or_else(|_| Vec::new(), |pose| reactions::redundant(system, &pose))
 }

@@ -9,6 +9,8 @@ use crate::system::requirements;
 /// What a start is checked against, and what may move.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Start {
+    /// How many unknowns there are.
+    pub unknowns: usize,
     /// The gaps to be closed.
     pub gaps: Vec<Gap>,
     /// The unknowns that are velocities.
@@ -54,6 +56,7 @@ pub fn start(model: &Compiled) -> Start {
     let gaps = equations.gaps.iter();
     let gaps = gaps.map(|gap| Gap { joint: gap.joint.clone(), component: gap.component, unit: gap.unit.clone() });
     Start {
+        unknowns: equations.guesses.len(),
         gaps: gaps.collect(),
         speeds: equations.speeds.clone(),
         required: requirements(model, true),

@@ -33,7 +33,7 @@ pub(crate) use shared::{kept, redundant};
 
 /// A start state whose joints fit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Started<S> {
+pub(crate) struct Started<S> {
     /// The state.
     pub x: Vec<S>,
     /// The kinetic energy that impulses have taken, J.

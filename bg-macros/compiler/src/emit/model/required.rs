@@ -14,10 +14,12 @@ impl Emission<'_> {
     pub(super) fn required(&self) -> Option<TokenStream> {
         let program = self.model.programs.required[0].as_ref()?;
         let function = identifier(&program.routines[0].name);
-        let table = self.tables.required.iter().map(requirement);
+        let (count, table) = (self.tables.required.len(), self.tables.required.iter().map(requirement));
         Some(quote! {
             static REQUIREMENTS: &[::bg_model::__private::Requirement] = &[#(#table),*];
-            ::bg_model::__private::require(REQUIREMENTS, &Model::<f64>::#function(&parameters.numbers(), &[]))?;
+            let mut required = [0.0; #count];
+            Model::<f64>::#function(&parameters.numbers(), &[], &mut required);
+            ::bg_model::__private::require(REQUIREMENTS, &required)?;
         })
     }
 }

@@ -24,10 +24,10 @@ impl Emission<'_> {
             let constants = self.own_constants(program);
             let (statements, results) = self.body(routine);
             quote! {
-                fn #function(parameters: &[S; #parameters], u: &[S]) -> ::bg_model::__private::vec::Vec<S> {
+                fn #function(parameters: &[S; #parameters], u: &[S], to: &mut [S]) {
                     #constants
                     #statements
-                    ::bg_model::__private::vec::Vec::from([#(#results),*])
+                    to.copy_from_slice(&[#(#results),*]);
                 }
             }
         });
@@ -41,13 +41,15 @@ impl Emission<'_> {
         let impulse_energy = self.model.programs.holding.as_ref().map(|_| {
             quote! {
                 fn impulse_energy(&self) -> Result<S, ::bg_model::assembly::AssemblyError> {
-                    Ok(::bg_model::__private::start(self, #over)?.lost)
+                    ::bg_model::__private::start(self, #over, &mut [S::from_f64(0.0); #n])
                 }
             }
         });
         let start = quote! {
             fn start(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
-                Ok(SVector::from_column_slice(&::bg_model::__private::start(self, #over)?.x))
+                let mut x = SVector::<S, #n>::from_element(S::from_f64(0.0));
+                ::bg_model::__private::start(self, #over, x.as_mut_slice())?;
+                Ok(x)
             }
             #impulse_energy
         };
@@ -58,7 +60,7 @@ impl Emission<'_> {
     fn routines_of_start(&self) -> TokenStream {
         let Programs { starting, required: [_, required], .. } = &self.model.programs;
         let p = &self.shape.p;
-        let Start { gaps, speeds, required: requirements, sides, impulse } = &self.tables.start;
+        let Start { unknowns, gaps, speeds, required: requirements, sides, impulse } = &self.tables.start;
         let gaps = gaps.iter().map(|Gap { joint, component, unit }| {
             quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
         });
@@ -74,39 +76,36 @@ impl Emission<'_> {
         ];
         let calls = routines.into_iter().map(|(word, program)| {
             let word = format_ident!("{word}");
-            let value = program.map_or_else(
-                || quote!(::bg_model::__private::vec::Vec::new()),
-                |Program { routines: [routine], .. }| {
-                    let function = identifier(&routine.name);
-                    quote!(Self::#function(values, unknowns))
-                },
-            );
-            quote!(::bg_model::__private::StartRoutine::#word => #value,)
+            let call = program.map(|Program { routines: [routine], .. }| {
+                let function = identifier(&routine.name);
+                quote!(Self::#function(values, unknowns, to))
+            });
+            quote!(::bg_model::__private::StartRoutine::#word => { #call })
         });
         quote! {
             impl<S: Scalar> Model<S> {
                 fn of_start(
-                    values: &[S; #p], routine: ::bg_model::__private::StartRoutine, unknowns: &[S],
-                ) -> ::bg_model::__private::vec::Vec<S> {
+                    values: &[S; #p], routine: ::bg_model::__private::StartRoutine, unknowns: &[S], to: &mut [S],
+                ) {
                     match routine { #(#calls)* }
                 }
             }
             impl<S: Scalar> ::bg_model::__private::Starting<S> for Model<S> {
                 fn table(&self) -> ::bg_model::__private::StartTable {
                     ::bg_model::__private::StartTable {
-                        gaps: &[#(#gaps),*], speeds: &[#(#speeds),*], required: &[#(#requirements),*], sides: #sides,
-                        impulse: #impulse,
+                        unknowns: #unknowns, gaps: &[#(#gaps),*], speeds: &[#(#speeds),*],
+                        required: &[#(#requirements),*], sides: #sides, impulse: #impulse,
                     }
                 }
                 fn in_numbers(
-                    &self, routine: ::bg_model::__private::StartRoutine, unknowns: &[f64],
-                ) -> ::bg_model::__private::vec::Vec<f64> {
-                    Model::<f64>::of_start(&self.parameters.numbers(), routine, unknowns)
+                    &self, routine: ::bg_model::__private::StartRoutine, unknowns: &[f64], to: &mut [f64],
+                ) {
+                    Model::<f64>::of_start(&self.parameters.numbers(), routine, unknowns, to);
                 }
                 fn in_scalars(
-                    &self, routine: ::bg_model::__private::StartRoutine, unknowns: &[S],
-                ) -> ::bg_model::__private::vec::Vec<S> {
-                    Self::of_start(&self.values, routine, unknowns)
+                    &self, routine: ::bg_model::__private::StartRoutine, unknowns: &[S], to: &mut [S],
+                ) {
+                    Self::of_start(&self.values, routine, unknowns, to);
                 }
             }
         }
