@@ -11,19 +11,14 @@ const FOLDERS: [&str; 3] = ["tests/models", "bg-model/workbench/examples", "hack
 /// The text of the call in the file `name` that has the graph `graph`.
 pub fn of(name: &str, graph: &str) -> String {
     let text = call(name, &format!("graph {graph} "));
-    // A text has no crates: the part of another one stands in it.
-    match text.contains("hacksaw :: Mechanism") {
-        false => text,
-        true => {
-            let parts = call("mechanism.rs", "graph Hacksaw ");
-            let part = &parts[..parts.find("# [doc = r\"").unwrap_or(0)];
-            let end = parts.find("pub graph").expect("a graph behind the part");
-            let own = parts[..end]
-                .rfind("pub part")
-                .map_or(part, |_| &parts[..parts[..end].rfind('}').expect("its end") + 1]);
-            format!("{own} {}", text.replace("hacksaw :: Mechanism", "Mechanism"))
-        }
+    if !text.contains("hacksaw :: Mechanism") {
+        return text;
     }
+    // A text has no crates: the part of another one stands in it.
+    let parts = call("mechanism.rs", "graph Hacksaw ");
+    let graph = parts.find("pub graph").expect("a graph after the part");
+    let end = parts[..graph].rfind('}').expect("the part's end");
+    format!("{} {}", &parts[..=end], text.replace("hacksaw :: Mechanism", "Mechanism"))
 }
 
 fn call(name: &str, having: &str) -> String {

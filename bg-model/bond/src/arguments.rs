@@ -1,7 +1,7 @@
 //! What is asked for.
 //!
-//! In: the words of the command line. Out: a command of this program, or one of the workbench with the file that stands
-//! behind it. The options are the workbench's: its own reader knows them, as it knows the names in the file.
+//! In: the words of the command line. Out: a command of this program, or one of the workbench with the file that comes
+//! after it. The options are the workbench's: its own reader knows them, as it knows the names in the file.
 
 use std::ffi::OsString;
 use std::path::PathBuf;

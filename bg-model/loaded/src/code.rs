@@ -25,6 +25,8 @@ pub struct Code {
     read: Vec<Symbol>,
     /// The operations.
     batches: Vec<Batch>,
+    /// Whether it reads what iterations find.
+    reads_found: bool,
     /// The places of the results.
     results: Vec<Place>,
     /// How many places there are.
@@ -81,6 +83,7 @@ impl Code {
             }
         }
         code.places = next as usize;
+        code.reads_found = code.read.iter().any(|symbol| matches!(symbol, Symbol::Found(_)));
         code.results = routine.results.iter().map(|&result| places.of(&code, result)).collect();
         code
     }
@@ -91,10 +94,10 @@ impl Code {
         self.results.len()
     }
 
-    /// Whether it reads such a symbol.
+    /// Whether it reads what iterations find.
     #[must_use]
-    pub fn reads(&self, is: impl Fn(&Symbol) -> bool) -> bool {
-        self.read.iter().any(is)
+    pub fn reads_found(&self) -> bool {
+        self.reads_found
     }
 
     /// The row of a model with these constants.
@@ -289,13 +292,10 @@ impl Batch {
             Self::Times(of) => each(next, of, |&(place, factor)| known[place as usize].times(factor)),
             Self::Negate(of) => each(next, of, |&place| -known[place as usize]),
             Self::Unary(function, of) => {
-                let function = unary(*function);
+                let function = of_one(*function);
                 each(next, of, |&place| function(known[place as usize]))
             }
-            Self::Binary(function, of) => {
-                let function: fn(S, S) -> S = if *function == Function::Pow { S::powf } else { S::atan2 };
-                binary(known, next, of, function)
-            }
+            Self::Binary(function, of) => binary(known, next, of, of_two(*function)),
             Self::Select(of) => each(next, of, |&(switch, [below, above])| {
                 S::select(negative[switch as usize], known[below as usize], known[above as usize])
             }),
@@ -313,7 +313,7 @@ fn each<T, S>(next: &mut [S], of: &[T], value: impl Fn(&T) -> S) -> usize {
 }
 
 /// A function of one argument.
-pub fn unary<S: Scalar>(function: Function) -> fn(S) -> S {
+pub fn of_one<S: Scalar>(function: Function) -> fn(S) -> S {
     match function {
         Function::Sqrt => S::sqrt,
         Function::Sin => S::sin,
@@ -326,5 +326,14 @@ pub fn unary<S: Scalar>(function: Function) -> fn(S) -> S {
         Function::Tanh => S::tanh,
         Function::Abs => S::abs,
         Function::Atan2 | Function::Pow => unreachable!("{function:?} has two arguments"),
+    }
+}
+
+/// A function of two arguments.
+pub fn of_two<S: Scalar>(function: Function) -> fn(S, S) -> S {
+    match function {
+        Function::Atan2 => S::atan2,
+        Function::Pow => S::powf,
+        _ => unreachable!("{function:?} has one argument"),
     }
 }

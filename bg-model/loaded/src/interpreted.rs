@@ -160,7 +160,7 @@ impl<S: Scalar> Interpreted<S> {
 
     /// Writes what a program gives at a moment. What iterations find for it is found first.
     pub(crate) fn evaluate(&self, code: &Code, row: &RefCell<Row<S>>, moment: Moment<'_, S>, to: &mut [S]) {
-        let found = if moment.found.is_empty() && code.reads(|symbol| matches!(symbol, Symbol::Found(_))) {
+        let found = if moment.found.is_empty() && code.reads_found() {
             self.found(moment.t, moment.x, moment.negative)
         } else {
             Vec::new()

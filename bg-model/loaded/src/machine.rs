@@ -14,8 +14,8 @@ use bg_model::dynamics::{Dynamics, Machine, Rates};
 use bg_model::failure::Origin;
 use bg_model::holding::{Held, Redundancy, Stops};
 use bg_model::input::{Input, next_break};
-use bg_model::linear::Sparsity;
 use bg_model::linear::table::{eliminate, substitute};
+use bg_model::linear::{Field, Sparsity};
 use bg_model::mechanism::{Differentiable, Joinable, Liftable, SideBySide};
 use bg_model::nalgebra::Complex;
 use bg_model::parameters::ParameterError;
@@ -27,9 +27,13 @@ use crate::interpreted::{Interpreted, Moment, of_parameters};
 use crate::series::Expansion;
 
 impl<S: Scalar> Interpreted<S> {
-    /// Gives the states of `moved` what a projection makes of them.
-    fn moved(&self, moved: &[usize], projected: &[S], x: &mut [S]) {
-        moved.iter().zip(projected).for_each(|(&state, &value)| x[state] = value);
+    /// Solves for `b` with the factors of an elimination.
+    fn substituted<T: Scalar, F: Field<T>>(&self, factors: &[F], b: &mut [F]) {
+        let of = &self.blueprint.elimination;
+        let mut whole = b.to_vec();
+        whole.resize(of.rows, F::real(T::from_f64(0.0)));
+        substitute::<T, F>(&of.steps, factors, &mut whole);
+        b.copy_from_slice(&whole[..b.len()]);
     }
 }
 
@@ -64,7 +68,7 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
         for (moved, code, row) in steps {
             if !moved.is_empty() {
                 let projected = self.listed(code, row, Moment::at(t, x, negative));
-                self.moved(moved, &projected, x);
+                moved.iter().zip(projected).for_each(|(&state, value)| x[state] = value);
             }
         }
     }
@@ -127,19 +131,11 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn substitute(&self, factors: &[S], b: &mut [S]) {
-        let of = &self.blueprint.elimination;
-        let mut whole = b.to_vec();
-        whole.resize(of.rows, S::from_f64(0.0));
-        substitute::<S, S>(&of.steps, factors, &mut whole);
-        b.copy_from_slice(&whole[..b.len()]);
+        self.substituted::<S, S>(factors, b);
     }
 
     fn substitute_complex(&self, factors: &[Complex<f64>], b: &mut [Complex<f64>]) {
-        let of = &self.blueprint.elimination;
-        let mut whole = b.to_vec();
-        whole.resize(of.rows, Complex::new(0.0, 0.0));
-        substitute::<f64, Complex<f64>>(&of.steps, factors, &mut whole);
-        b.copy_from_slice(&whole[..b.len()]);
+        self.substituted::<f64, Complex<f64>>(factors, b);
     }
 
     fn second(&self) -> Range<usize> {

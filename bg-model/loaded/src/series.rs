@@ -15,6 +15,8 @@ use bg_model::series::{
     Flat, abs, acos, asin, atan2, cos, exp, inner_product, ln, power, powf, quotient, sin, sqrt, tan, tanh,
 };
 
+use crate::code::{of_one, of_two};
+
 /// Where a value stands.
 #[derive(Clone, Copy, Debug)]
 struct Value {
@@ -235,15 +237,9 @@ impl SeriesCode {
                 Moving::Divide(a, b) => fixed(a) / fixed(b),
                 Moving::Negate(a) => -of(a),
                 Moving::Call(function, [a, b], at) => {
-                    let exponent = if b.changes { of(b) } else { fixed(b) };
-                    call(
-                        function,
-                        rows,
-                        k,
-                        at,
-                        [of(a), if function == Function::Pow { exponent } else { of(b) }],
-                        b.changes,
-                    )
+                    // An exponent that does not change is the number itself at each order.
+                    let is_exponent = function == Function::Pow && !b.changes;
+                    call(function, rows, k, at, [of(a), if is_exponent { fixed(b) } else { of(b) }], b.changes)
                 }
                 Moving::Select(switch, below, above) => S::select(negative[switch as usize], of(below), of(above)),
             };
@@ -290,10 +286,9 @@ fn evaluated<S: Scalar>(operation: &Operation<usize>, values: &[S], negative: &[
         Operation::Negate(a) => -values[a],
         Operation::Call(function, ref arguments) => {
             let a = values[arguments[0]];
-            match (function, arguments.get(1).map(|&b| values[b])) {
-                (Function::Atan2, Some(b)) => a.atan2(b),
-                (Function::Pow, Some(b)) => a.powf(b),
-                _ => crate::code::unary(function)(a),
+            match arguments.get(1) {
+                Some(&b) => of_two(function)(a, values[b]),
+                None => of_one(function)(a),
             }
         }
         Operation::Select { switch, negative: below, positive } => {

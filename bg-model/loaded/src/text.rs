@@ -72,7 +72,7 @@ pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
 /// What is wanted of a text.
 #[derive(Clone, Copy)]
 pub struct Wanted<'a> {
-    /// Which scenes behind each graph's first model, by their names: others have no blueprints, and are not looked at.
+    /// Which scenes after each graph's first model, by their names: others have no blueprints, and are not looked at.
     pub scene: &'a dyn Fn(&str) -> bool,
     /// Of which programs descriptions tell the operations. To run a model not all of them have to be made.
     pub counted: Counted,

@@ -165,7 +165,7 @@ pub trait Joinable<V>: Liftable<Gradient> {
     /// The models with these values of the parameters, as many as have slopes in the vectors at most.
     ///
     /// # Errors
-    /// As [`Tunable::tuned`].
+    /// As [`Differentiable::tuned`].
     fn side_by_side(&self, values: &[Vec<Gradient>]) -> Result<SideBySide<V>, ParameterError>;
 }
 

@@ -31,7 +31,7 @@ pub(crate) struct Texts {
     pub name: String,
     pub version: String,
     pub about: String,
-    /// The file that has the models, which stands behind each command; none of a compiled program.
+    /// The file that has the models, which comes after each command; none of a compiled program.
     pub file: Option<String>,
 }
 
@@ -89,7 +89,7 @@ impl Program {
         self
     }
 
-    /// It is called `name`, and its models are those of `file`, which stands behind each command: `NAME run FILE`.
+    /// It is called `name`, and its models are those of `file`, which comes after each command: `NAME run FILE`.
     #[must_use]
     pub fn on_file(mut self, name: &str, file: &str) -> Self {
         name.clone_into(&mut self.texts.name);

@@ -10,6 +10,7 @@ use super::routine::parsed;
 use crate::graph::{Input, Parameter};
 use crate::source::ast::Name;
 use crate::source::names::{self, INPUTS, PARAMETERS};
+use crate::tables;
 
 /// What the generated structs are made from.
 pub(super) struct Given<'a> {
@@ -189,7 +190,7 @@ impl Given<'_> {
         let names: Vec<Ident> = self.parameter_names().collect();
         let texts = self.parameters.iter().map(|parameter| &parameter.name.text);
         let defaults = self.parameters.iter().map(|parameter| number(parameter.default));
-        let table = self.parameters.iter().map(parameter_info);
+        let table = self.parameters.iter().map(|parameter| parameter_info(&tables::parameter(parameter)));
         let index: Vec<Literal> = (0..names.len()).map(Literal::usize_unsuffixed).collect();
         let count = Literal::usize_unsuffixed(names.len());
         quote! {
@@ -244,12 +245,10 @@ fn field_doc(docs: &str, unit: &str, default: Option<f64>) -> String {
     format!("{docs}{gap}Unit: {unit}.{default}")
 }
 
-fn parameter_info(parameter: &Parameter) -> TokenStream {
-    let (name, unit, doc) = (&parameter.name.text, &parameter.unit, &parameter.docs);
-    let default = number(parameter.default);
-    let (lower, lower_included) = parameter.lower.unwrap_or((f64::NEG_INFINITY, false));
-    let (upper, upper_included) = parameter.upper.unwrap_or((f64::INFINITY, false));
-    let (lower, upper) = (number(lower), number(upper));
+fn parameter_info(of: &tables::Parameter) -> TokenStream {
+    let tables::Parameter { name, unit, default, doc, range } = of;
+    let tables::Bounds { lower: (lower, lower_included), upper: (upper, upper_included) } = *range;
+    let [default, lower, upper] = [*default, lower, upper].map(number);
     quote! {
         ::bg_model::description::ParameterInfo {
             name: #name, unit: #unit, default: #default, doc: #doc,

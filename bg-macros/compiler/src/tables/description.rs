@@ -209,7 +209,9 @@ fn operations(model: &Compiled, counted: Counted) -> Vec<(String, Counts)> {
     }
 }
 
-fn parameter(of: &graph::Parameter) -> Parameter {
+/// A parameter with its bounds, infinite where none is given.
+#[must_use]
+pub fn parameter(of: &graph::Parameter) -> Parameter {
     Parameter {
         name: of.name.text.clone(),
         unit: of.unit.clone(),
