@@ -1,26 +1,59 @@
-//! Models of text, interpreted, beside the same models compiled by rustc: tables, functions and runs are equal to the
-//! bit.
+//! Models of text, interpreted and in machine code, beside the same models compiled by rustc: tables, functions and runs
+//! are equal to the bit.
 
+mod random;
 mod studies;
 mod texts;
 
 use std::rc::Rc;
 use std::sync::Arc;
 
-use bg_loaded::{Blueprint, Graph, Interpreted, load};
+use bg_loaded::{BackEnd, Blueprint, Counted, Graph, Interpreted, Wanted, load, load_wanted};
 use bg_model::dynamics::{Machine, branches};
 use bg_model::input::Input;
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::nalgebra::Complex;
-use bg_model::parameters::Parameters;
+use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::run::{Request, RunError, Simulation, Trajectory};
 use bg_model::simulation::Samples;
 use bond_graph_tests::each_example;
 
-/// A model of a text with the values and inputs of `of`.
-fn interpreted(blueprint: &Arc<Blueprint>, values: &[f64], inputs: &[Input]) -> Rc<dyn Machine> {
-    Rc::new(Interpreted::<f64>::new(blueprint, values, inputs).expect("the compiled model takes the same values"))
+/// The interpreter, and machine code of each program from its first evaluation on.
+const BACK_ENDS: [BackEnd; 2] = [BackEnd::Interpreter, BackEnd::MachineCode { after: 0 }];
+
+/// A model of a text with these values and inputs.
+fn loaded(
+    blueprint: &Arc<Blueprint>,
+    values: &[f64],
+    inputs: &[Input],
+    back_end: BackEnd,
+) -> Result<Rc<dyn Machine>, ParameterError> {
+    Ok(Rc::new(Interpreted::<f64>::new(blueprint, values, inputs)?.by(back_end)))
+}
+
+/// How numbers are compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Compared {
+    /// To the bit.
+    Exactly,
+    /// To the bit, of zeros without their signs: where rustc's code takes two operations at once, a sum may begin with
+    /// the other sign.
+    WithoutSignsOfZeros,
+}
+
+impl Compared {
+    fn bits(self, of: &[f64]) -> Vec<u64> {
+        let zero = if self == Self::Exactly { -0.0 } else { 0.0 };
+        // What is no number has many forms.
+        of.iter().map(|value| if value.is_nan() { u64::MAX } else { (value + zero).to_bits() }).collect()
+    }
+
+    fn filled(self, length: usize, fill: impl FnOnce(&mut [f64])) -> Vec<u64> {
+        let mut values = vec![0.0; length];
+        fill(&mut values);
+        self.bits(&values)
+    }
 }
 
 /// Every model of a mechanism beside that of its text.
@@ -45,31 +78,23 @@ impl MechanismVisitor for Beside<'_> {
         let inputs: Vec<Input> = (1..=Me::describe().inputs.len()).map(|k| Input::constant(0.7 * k as f64)).collect();
         let blueprint = self.graph.models[self.index].blueprint.as_ref().expect("all scenes were asked for");
         assert_eq!(*blueprint.description(), *Me::describe());
-        let loaded = interpreted(blueprint, &parameters.values(), &inputs);
+        let values = parameters.values();
         let compiled = Me::make(parameters, &inputs).expect("defaults are possible").machine();
-        same_functions(&*compiled, &*loaded);
-        for method in [Integrator::default(), "radau9".parse().expect("a method"), "nystrom".parse().expect("a method")]
-        {
-            same_runs(&compiled, &loaded, method);
+        for back_end in BACK_ENDS {
+            let loaded = loaded(blueprint, &values, &inputs, back_end).expect("the compiled model takes these values");
+            same_functions(&*compiled, &*loaded, Compared::WithoutSignsOfZeros);
+            for method in ["auto", "taylor", "dop853", "radau9", "nystrom"] {
+                same_runs(&compiled, &loaded, method.parse().expect("a method"), Compared::WithoutSignsOfZeros);
+            }
         }
+        let has_back_end = cfg!(any(target_arch = "x86_64", target_arch = "aarch64"));
+        assert_eq!(blueprint.translate() > 0, has_back_end, "{}", blueprint.description().name);
     }
 }
 
-/// The bits of numbers, of zeros without their signs: where rustc's code takes two operations at once, a sum may begin
-/// with the other sign.
-fn bits(of: &[f64]) -> Vec<u64> {
-    // What is no number has many forms.
-    of.iter().map(|value| if value.is_nan() { u64::MAX } else { (value + 0.0).to_bits() }).collect()
-}
-
-fn filled(length: usize, fill: impl FnOnce(&mut [f64])) -> Vec<u64> {
-    let mut values = vec![0.0; length];
-    fill(&mut values);
-    bits(&values)
-}
-
 /// The functions at the start and at places near it.
-fn same_functions(compiled: &dyn Machine, loaded: &dyn Machine) {
+fn same_functions(compiled: &dyn Machine, loaded: &dyn Machine, compared: Compared) {
+    let bits = |of: &[f64]| compared.bits(of);
     let name = compiled.description().name;
     assert_eq!([compiled.states(), compiled.switches()], [loaded.states(), loaded.switches()], "{name}");
     assert_eq!(bits(&compiled.decided()), bits(&loaded.decided()), "{name}");
@@ -83,12 +108,13 @@ fn same_functions(compiled: &dyn Machine, loaded: &dyn Machine) {
     let mut random = fastrand::Rng::with_seed(7);
     for round in 0..16 {
         let x: Vec<f64> = start.iter().map(|x| x + f64::from(round) * 1e-3 * (random.f64() - 0.5)).collect();
-        same_at(compiled, loaded, 0.1 * f64::from(round), &x);
+        same_at(compiled, loaded, 0.1 * f64::from(round), &x, compared);
     }
 }
 
 /// Everything that a run asks for, at one moment.
-fn same_at(compiled: &dyn Machine, loaded: &dyn Machine, t: f64, x: &[f64]) {
+fn same_at(compiled: &dyn Machine, loaded: &dyn Machine, t: f64, x: &[f64], compared: Compared) {
+    let bits = |of: &[f64]| compared.bits(of);
     let name = compiled.description().name;
     let negative = branches(compiled, t, x);
     assert_eq!(negative, branches(loaded, t, x), "{name}");
@@ -96,14 +122,14 @@ fn same_at(compiled: &dyn Machine, loaded: &dyn Machine, t: f64, x: &[f64]) {
     let both = |what: &str, of: &dyn Fn(&dyn Machine) -> Vec<u64>| {
         assert_eq!(of(compiled), of(loaded), "{name}: {what} at {t} s");
     };
-    both("rate", &|of| filled(n, |dx| of.rate(t, x, &negative, dx)));
-    both("guards", &|of| filled(g, |guards| of.guards(t, x, &negative, guards)));
+    both("rate", &|of| compared.filled(n, |dx| of.rate(t, x, &negative, dx)));
+    both("guards", &|of| compared.filled(g, |guards| of.guards(t, x, &negative, guards)));
     both("project", &|of| {
         let mut x = x.to_vec();
         of.project(t, &negative, &mut x);
         bits(&x)
     });
-    both("outputs", &|of| filled(of.description().outputs.len(), |y| of.outputs(t, x, &negative, y)));
+    both("outputs", &|of| compared.filled(of.description().outputs.len(), |y| of.outputs(t, x, &negative, y)));
     both("energies", &|of| {
         let powers = of.powers(t, x, &negative);
         bits(&[of.stored_energy(t, x, &negative), powers.supplied, powers.dissipated])
@@ -123,28 +149,47 @@ fn same_at(compiled: &dyn Machine, loaded: &dyn Machine, t: f64, x: &[f64]) {
     let entries = compiled.sparsity().len(n);
     both("jacobian", &|of| {
         let mut slope = vec![0.0; n];
-        let mut all = filled(entries, |entries| of.jacobian(t, x, &negative, entries, &mut slope));
+        let mut all = compared.filled(entries, |entries| of.jacobian(t, x, &negative, entries, &mut slope));
         all.extend(bits(&slope));
         all
     });
-    both("damping", &|of| filled(of.damping_sparsity().len(n), |entries| of.damping(t, x, &negative, entries)));
-    both("elimination", &|of| eliminated(of, t, x, &negative));
+    both("damping", &|of| {
+        compared.filled(of.damping_sparsity().len(n), |entries| of.damping(t, x, &negative, entries))
+    });
+    let width = |of: &dyn Machine| of.series().map(|size| size.width);
+    assert_eq!(width(compiled), width(loaded), "{name}");
+    // Coefficients of high orders differ from those of rustc's code in the last places: it is open why.
+    if compared == Compared::Exactly {
+        both("series", &|of| bits(&expanded(of, t, x, &negative)));
+    }
+    both("elimination", &|of| bits(&eliminated(of, t, x, &negative)));
     assert_eq!(compiled.second(), loaded.second(), "{name}");
-    both("forces", &|of| filled(n, |dx| of.forces(t, x, &negative, dx)));
+    both("forces", &|of| compared.filled(n, |dx| of.forces(t, x, &negative, dx)));
     assert_eq!(compiled.operations_of_forces(), loaded.operations_of_forces(), "{name}");
     assert_eq!(compiled.held(), loaded.held(), "{name}");
     assert_eq!(bits(compiled.kept()), bits(loaded.kept()), "{name}");
     let held = compiled.held().map_or(0, |held| held.entries());
-    both("hold", &|of| filled(held, |entries| of.hold(t, x, &negative, entries)));
+    both("hold", &|of| compared.filled(held, |entries| of.hold(t, x, &negative, entries)));
     assert_eq!(compiled.stops(), loaded.stops(), "{name}");
     let stops = compiled.stops().map_or(0, |stops| stops.entries());
-    both("impact", &|of| filled(stops, |entries| of.impact(t, x, &negative, entries)));
+    both("impact", &|of| compared.filled(stops, |entries| of.impact(t, x, &negative, entries)));
     assert_eq!(compiled.next_break(t).to_bits(), loaded.next_break(t).to_bits(), "{name}");
-    assert_eq!(compiled.not_finite(t, x, &negative), loaded.not_finite(t, x, &negative), "{name}");
+    let origin = |of: &dyn Machine| format!("{:?}", of.not_finite(t, x, &negative));
+    assert_eq!(origin(compiled), origin(loaded), "{name}");
+}
+
+/// The series from there.
+fn expanded(of: &dyn Machine, t: f64, x: &[f64], negative: &[bool]) -> Vec<f64> {
+    const ORDER: usize = 12;
+    let Some(size) = of.series() else { return Vec::new() };
+    let (mut rows, mut series) = (vec![0.0; ORDER * size.width], vec![0.0; (ORDER + 1) * x.len()]);
+    series[..x.len()].copy_from_slice(x);
+    of.expand(t, 1e-3, negative, &mut rows, &mut series);
+    series
 }
 
 /// One right side solved for, by a real and by a complex number.
-fn eliminated(of: &dyn Machine, t: f64, x: &[f64], negative: &[bool]) -> Vec<u64> {
+fn eliminated(of: &dyn Machine, t: f64, x: &[f64], negative: &[bool]) -> Vec<f64> {
     let Some(count) = of.factors() else { return Vec::new() };
     let n = of.states();
     let mut entries = vec![0.0; of.sparsity().len(n)];
@@ -158,11 +203,12 @@ fn eliminated(of: &dyn Machine, t: f64, x: &[f64], negative: &[bool]) -> Vec<u64
     let mut c: Vec<Complex<f64>> = (0..n).map(|k| Complex::new(1.0, k as f64)).collect();
     of.substitute_complex(&complex, &mut c);
     let parts = c.iter().flat_map(|c| [c.re, c.im]);
-    bits(&factors.into_iter().chain(b).chain(parts).chain([f64::from(u8::from(is_regular))]).collect::<Vec<_>>())
+    factors.into_iter().chain(b).chain(parts).chain([f64::from(u8::from(is_regular))]).collect()
 }
 
 /// A run of both, as far as it comes.
-fn same_runs(compiled: &Rc<dyn Machine>, loaded: &Rc<dyn Machine>, method: Integrator) {
+fn same_runs(compiled: &Rc<dyn Machine>, loaded: &Rc<dyn Machine>, method: Integrator, compared: Compared) {
+    let told = |run: &Trajectory| told(run, compared);
     let request =
         || Request { method, t_end: 0.05, samples: Samples::Every(0.01), step_limit: 400, ..Request::default() };
     let run = |of: &Rc<dyn Machine>| match Simulation::over(Rc::clone(of), request()).run() {
@@ -174,8 +220,11 @@ fn same_runs(compiled: &Rc<dyn Machine>, loaded: &Rc<dyn Machine>, method: Integ
 }
 
 /// Every number of a run.
-fn told(run: &Trajectory) -> String {
+fn told(run: &Trajectory, compared: Compared) -> String {
     let text = format!("{:?}\n{:?}\n{:?}\n{:?}", run.recording, run.statistics, run.last, run.methods);
+    if compared == Compared::Exactly {
+        return text;
+    }
     ["-0.0,", "-0.0]", "-0.0)"].iter().fold(text, |text, zero| text.replace(zero, &zero[1..]))
 }
 
@@ -197,4 +246,24 @@ each_example!(examples);
 #[test]
 fn hacksaw() {
     all_models::<hacksaw::mechanism::Hacksaw>("mechanism.rs");
+}
+
+#[test]
+fn of_a_graph_whose_scene_is_wanted_alone_parameters_and_names_are_known() {
+    let text = texts::of("mechanism.rs", "Hacksaw");
+    let loaded = |wanted: &str| {
+        let graphs = load_wanted(&text, Wanted { scene: &|name| name == wanted, counted: Counted::Made });
+        graphs.unwrap_or_else(|faults| panic!("{}", faults[0])).remove(0)
+    };
+    let compiled = |graph: &Graph| -> Vec<&str> {
+        let models = graph.models.iter().filter(|model| model.blueprint.is_some());
+        models.map(|model| model.description.name).collect()
+    };
+    let graph = loaded("Motion");
+    assert_eq!(compiled(&graph), ["Motion"]);
+    let literal = graph.models[0].description;
+    let whole = hacksaw::mechanism::Hacksaw::<f64>::describe();
+    assert_eq!((literal.name, literal.parameters, literal.inputs), (whole.name, whole.parameters, whole.inputs));
+    assert_eq!(graph.models.len(), <hacksaw::mechanism::Hacksaw as Scenes>::MODELS);
+    assert_eq!(compiled(&loaded("Nothing")), ["Hacksaw"]);
 }

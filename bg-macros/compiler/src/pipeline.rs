@@ -70,21 +70,33 @@ pub struct Compiled {
     pub programs: Programs,
 }
 
+/// What is known of a model of a graph.
+#[derive(Debug)]
+pub enum Known {
+    /// Everything.
+    Model(Box<Compiled>),
+    /// Of a literal graph that is not wanted, as far as its state equations, and the names of its scenes.
+    Graph(Box<Derived>, Vec<String>),
+}
+
 /// All models of a macro call. With `scenes only;` the literal graph is none: its stages end with the state equations.
 /// A fault of a literal graph is not repeated for its scenes, one of a part not for its uses.
 ///
 /// # Errors
 /// The faults of all parts and graphs.
 pub fn models(source: &Source) -> Staged<Vec<Compiled>> {
-    models_where(source, &|_| true)
+    let known = models_where(source, &|_| true)?.into_iter();
+    let compiled = known.filter_map(|known| if let Known::Model(model) = known { Some(*model) } else { None });
+    Ok(compiled.collect())
 }
 
-/// The same of each graph's first model and of the scenes of these names alone; those that are not wanted are not looked
-/// at. [`Compiled::scenes`] names them.
+/// The same of the models of these names alone, of each graph the first one where none is wanted: scenes that are not
+/// wanted are not looked at, the stages of a literal graph that is not wanted end with the state equations. What comes
+/// first of a graph has the names of all its scenes.
 ///
 /// # Errors
 /// As [`models`].
-pub fn models_where(source: &Source, is_wanted: &dyn Fn(&str) -> bool) -> Staged<Vec<Compiled>> {
+pub fn models_where(source: &Source, is_wanted: &dyn Fn(&str) -> bool) -> Staged<Vec<Known>> {
     let flattened = part::flatten(source)?;
     of_graphs(&flattened, is_wanted).map_err(|faults| flattened.told(faults))
 }
@@ -112,20 +124,20 @@ impl Compiled {
     }
 }
 
-fn of_graphs(flattened: &Flattened, is_wanted: &dyn Fn(&str) -> bool) -> Staged<Vec<Compiled>> {
+fn of_graphs(flattened: &Flattened, is_wanted: &dyn Fn(&str) -> bool) -> Staged<Vec<Known>> {
     let mut models = Vec::new();
     let mut faults = names::check(&flattened.source).err().unwrap_or_default();
     flattened.unused.iter().for_each(|part| faults.extend(of_part(part)));
     for graph in &flattened.source.graphs {
         match scene::variants(graph) {
-            Ok(mut variants) => {
-                let is_only = scene::scenes_only(graph);
-                // The literal graph, and with `scenes only;` the first scene, are always looked at.
-                let mut place = 0..;
-                variants.retain(|variant| {
-                    place.next() <= Some(usize::from(is_only)) || is_wanted(&variant.graph.name.text)
-                });
-                each_variant(&variants, is_only, &mut models, &mut faults);
+            Ok(variants) => {
+                let scenes_only = scene::scenes_only(graph);
+                let mut wanted: Vec<bool> = variants.iter().map(|of| is_wanted(&of.graph.name.text)).collect();
+                // With `scenes only;` the first scene stands for the graph.
+                if scenes_only || !wanted.contains(&true) {
+                    wanted[usize::from(scenes_only)] = true;
+                }
+                each_variant(&variants, &wanted, scenes_only, &mut models, &mut faults);
             }
             Err(found) => faults.extend(found),
         }
@@ -145,12 +157,22 @@ fn of_part(part: &Graph) -> Faults {
     faults
 }
 
-fn each_variant(variants: &[Variant], scenes_only: bool, models: &mut Vec<Compiled>, faults: &mut Faults) {
+fn each_variant(
+    variants: &[Variant],
+    wanted: &[bool],
+    scenes_only: bool,
+    models: &mut Vec<Known>,
+    faults: &mut Faults,
+) {
     let before = models.len();
-    for variant in variants {
+    for (variant, &is_wanted) in variants.iter().zip(wanted) {
         let compiled = match variant.scene {
             None if scenes_only => derive(&variant.graph).map(|_| None),
-            _ => compile(variant).map(Some),
+            None if !is_wanted => {
+                derive(&variant.graph).map(|derived| Some(Known::Graph(Box::new(derived), variant.scenes.clone())))
+            }
+            Some(_) if !is_wanted => Ok(None),
+            _ => compile(variant).map(|model| Some(Known::Model(Box::new(model)))),
         };
         match compiled {
             Ok(model) => models.extend(model),
@@ -162,8 +184,12 @@ fn each_variant(variants: &[Variant], scenes_only: bool, models: &mut Vec<Compil
             }
         }
     }
-    if scenes_only && let [first, others @ ..] = &models[before..] {
-        faults.extend(others.iter().filter_map(|other| scene::adjusts_more(other.adjustable(), first.adjustable())));
+    let mut adjustable = models[before..].iter().filter_map(|known| match known {
+        Known::Model(model) => Some(model.adjustable()),
+        Known::Graph(..) => None,
+    });
+    if scenes_only && let Some(first) = adjustable.next() {
+        faults.extend(adjustable.filter_map(|other| scene::adjusts_more(other, first.clone())));
     }
 }
 

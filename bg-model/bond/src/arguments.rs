@@ -21,6 +21,8 @@ pub struct Call {
     pub file: PathBuf,
     /// Which graph of the file; the only one unless it is said.
     pub graph: Option<String>,
+    /// Whether models run in the interpreter alone, without machine code.
+    pub is_interpreted: bool,
     /// The words of the command.
     pub command: Vec<String>,
     pub options: Vec<OsString>,
@@ -99,7 +101,9 @@ pub fn asked(words: impl Iterator<Item = OsString>) -> Result<Asked, String> {
     }
     let file = words.remove(0).into();
     let graph = taken(&mut words, "--graph")?;
-    Ok(Asked::Program(Call { file, graph, command, options: words }))
+    let all = words.len();
+    words.retain(|word| word != "--interpreted");
+    Ok(Asked::Program(Call { file, graph, is_interpreted: words.len() < all, command, options: words }))
 }
 
 /// The commands that ask for one scene.
@@ -140,7 +144,8 @@ fn help() -> String {
          Others:\n  check        Says all faults of files: bond check FILE.. [--json]\n  \
          new          Writes a first mechanism: bond new NAME\n\n\
          FILE is a text with graphs (`.bond`), a Rust file with calls of `bond_graph!` (`.rs`), a robot (`.urdf`, or `.xml`\n\
-         and `.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which.\n\n\
+         and `.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which. Models run in machine code where\n\
+         that pays, with `--interpreted` without it: slower, and to the bit the same.\n\n\
          Exit code: 0 done, 1 the run or an output failed, 2 the input cannot be used.\n"
     )
 }
@@ -164,6 +169,7 @@ mod tests {
         Ok(Asked::Program(Call {
             file: file.into(),
             graph: graph.map(str::to_owned),
+            is_interpreted: false,
             command: command.iter().map(|&word| word.to_owned()).collect(),
             options: options.iter().map(Into::into).collect(),
         }))
@@ -176,6 +182,13 @@ mod tests {
         assert_eq!(of("golden check a.bond x"), call("a.bond", None, &["golden", "check"], &["x"]));
         assert_eq!(of("graph a.bond --graph B -v"), call("a.bond", Some("B"), &["graph"], &["-v"]));
         assert_eq!(of("graph a.bond --graph=B"), call("a.bond", Some("B"), &["graph"], &[]));
+    }
+
+    #[test]
+    fn machine_code_can_be_done_without() {
+        let Ok(Asked::Program(call)) = of("run saw.bond --t-end 2 --interpreted") else { panic!("a command") };
+        assert!(call.is_interpreted);
+        assert_eq!(call.options, ["--t-end", "2"]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The program `bond`: every command of the workbench on a text file, without rustc.
 //!
 //! In: a command, a file with graphs in the language of `bond_graph!` (or a robot's description), the command's options.
-//! Out: what the command gives of the models of the file, which are interpreted.
+//! Out: what the command gives of the models of the file, which run in machine code or are interpreted.
 
 mod arguments;
 mod check;
@@ -10,6 +10,7 @@ mod new;
 use std::process::ExitCode;
 
 use arguments::{Asked, Call};
+use bg_loaded::BackEnd;
 use bg_workbench::Program;
 use bg_workbench::files::console;
 use bond_graph::{faults, file, maker};
@@ -29,7 +30,7 @@ fn main() -> ExitCode {
 }
 
 /// Hands a command of the workbench to the program of a graph.
-fn program(Call { file, graph, command, options }: Call) -> ExitCode {
+fn program(Call { file, graph, is_interpreted, command, options }: Call) -> ExitCode {
     let read = match file::read(&file) {
         Ok(read) => read,
         Err(fault) => {
@@ -47,6 +48,7 @@ fn program(Call { file, graph, command, options }: Call) -> ExitCode {
     match maker::Loaded::of(graphs, graph.as_deref()) {
         Ok(loaded) => {
             let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into));
+            let loaded = if is_interpreted { loaded.by(BackEnd::Interpreter) } else { loaded };
             let program = Program::with(loaded).on_file("bond", &file.display().to_string());
             program.version(env!("CARGO_PKG_VERSION")).main(words.chain(options))
         }

@@ -1,13 +1,14 @@
 //! The models of a graph of a text, for the workbench.
 //!
-//! In: the graphs of a text, the name of one. Out: what makes its models: they are interpreted.
+//! In: the graphs of a text, the name of one. Out: what makes its models: they run in machine code where that pays, or are
+//! interpreted.
 
 use std::rc::Rc;
 use std::sync::Arc;
 
 use bg_analysis::identify::{Data, Identified, IdentifyError, Variable, identify};
 use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium, linearise_at};
-use bg_loaded::{Blueprint, Graph, Interpreted, Model};
+use bg_loaded::{BackEnd, Blueprint, Graph, Interpreted};
 use bg_model::description::Description;
 use bg_model::dynamics;
 use bg_model::extended::Accuracy;
@@ -24,6 +25,7 @@ use bg_workbench::precision::reference::{ReferenceError, Solution, solve};
 #[derive(Clone, Debug)]
 pub struct Loaded {
     graph: Graph,
+    back_end: BackEnd,
 }
 
 impl Loaded {
@@ -43,23 +45,24 @@ impl Loaded {
             None => return Err(format!("which graph? Say --graph NAME: there are {}", names())),
         };
         let graph = graphs.into_iter().nth(place).expect("it has this place");
-        Ok(Self { graph })
+        Ok(Self { graph, back_end: BackEnd::default() })
+    }
+
+    /// The same, whose models are evaluated by this back end.
+    #[must_use]
+    pub fn by(self, back_end: BackEnd) -> Self {
+        Self { back_end, ..self }
     }
 
     fn blueprint(&self, model: usize) -> &Arc<Blueprint> {
         let blueprint = &self.graph.models[model].blueprint;
-        blueprint.as_ref().expect("the scenes that a command asks for have been looked at")
+        blueprint.as_ref().expect("the models that a command asks for have been compiled")
     }
 }
 
 impl Maker for Loaded {
     fn models(&self) -> Vec<&'static Description> {
-        let description = |model: &Model| match &model.blueprint {
-            Some(blueprint) => blueprint.description(),
-            // It is known by its name only, and not asked for.
-            None => Box::leak(Box::new(Description { name: model.name.clone().leak(), ..Description::default() })),
-        };
-        self.graph.models.iter().map(description).collect()
+        self.graph.models.iter().map(|model| model.description).collect()
     }
 
     fn is_literal(&self) -> bool {
@@ -67,7 +70,7 @@ impl Maker for Loaded {
     }
 
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError> {
-        let model = Interpreted::new(self.blueprint(model), own, inputs)?;
+        let model = Interpreted::new(self.blueprint(model), own, inputs)?.by(self.back_end);
         Ok(Box::new(Made { over_slices: model.machine(), model }))
     }
 }

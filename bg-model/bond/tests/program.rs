@@ -51,6 +51,18 @@ pub graph Swing {
 }";
 
 #[test]
+fn machine_code_and_interpreter_write_the_same_bytes() {
+    let folder = folder();
+    told(folder.path(), "new swing");
+    let [machine_code, interpreted] = [("a.csv", ""), ("b.csv", " --interpreted")].map(|(csv, option)| {
+        told(folder.path(), &format!("run swing.bond --t-end 2 --no-figures --csv {csv}{option}"));
+        std::fs::read(folder.path().join(csv)).expect("it is written")
+    });
+    assert!(machine_code.len() > 1000 && machine_code == interpreted);
+    assert!(told(folder.path(), "--help").contains("--interpreted"));
+}
+
+#[test]
 fn a_new_file_runs_and_has_a_report() {
     let folder = folder();
     assert!(told(folder.path(), "new swing").contains("swing.bond"));

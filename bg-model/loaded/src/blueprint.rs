@@ -108,10 +108,10 @@ impl Blueprint {
         let statics = statics(&tables);
         let damped = tables::damping(&model);
         let Compiled { equations, programs, elimination, .. } = model;
-        let rows = Rows(equations.solution.multipliers.into());
+        let (rows, states) = (Rows(equations.solution.multipliers.into()), equations.states.len());
         Self {
             statics,
-            programs: codes(programs, &rows, damped, !tables.loops.is_empty()),
+            programs: codes(programs, &rows, states, damped, !tables.loops.is_empty()),
             elimination: deferred(move || self::elimination(&tables::elimination(&elimination))),
             closing_rows: tables.closing_rows,
             projected: tables.projected,
@@ -128,9 +128,37 @@ impl Blueprint {
         self.statics.description
     }
 
+    /// Translates all programs of a running model to machine code, which else is done when it pays; gives how many
+    /// there are now.
+    pub fn translate(&self) -> usize {
+        self.programs.running().into_iter().filter(|code| code.translate()).count()
+    }
+
     /// How many unknowns of algebraic loops there are.
     pub(crate) fn found(&self) -> usize {
         self.loops.iter().map(|of| of.unknowns).sum()
+    }
+}
+
+impl Codes {
+    /// Those that are evaluated while a model runs.
+    fn running(&self) -> Vec<&Code> {
+        let derivatives = [&self.derivatives.jacobian]
+            .into_iter()
+            .chain(self.derivatives.damping.as_ref().map(|(_, of)| of))
+            .chain(&self.holding)
+            .chain(&self.impacts)
+            .chain([&self.sizes, &self.not_finite])
+            .map(|of| &of.code);
+        let second = self.second.as_ref().map(|of| &**of);
+        let second = second.into_iter().flat_map(|of| [&of.derivatives].into_iter().chain(&of.forces));
+        let Self { rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers, .. } = self;
+        [rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers]
+            .into_iter()
+            .chain(derivatives)
+            .chain(second)
+            .chain(self.series.codes())
+            .collect()
     }
 }
 
@@ -165,7 +193,7 @@ impl Rows {
     }
 }
 
-fn codes(programs: Programs, rows: &Rows, damped: Vec<(usize, usize)>, finds: bool) -> Codes {
+fn codes(programs: Programs, rows: &Rows, states: usize, damped: Vec<(usize, usize)>, finds: bool) -> Codes {
     let (code, alone) = (|routine: &Routine| rows.code(routine), |of: &Program<1>| rows.alone(of));
     let some = |of: &Option<Program<1>>| of.as_ref().map(alone);
     let Programs {
@@ -174,9 +202,11 @@ fn codes(programs: Programs, rows: &Rows, damped: Vec<(usize, usize)>, finds: bo
     let Running { constants, rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers } =
         &running;
     let Starting { guesses, gaps, gap_sizes, start_state, sides } = &starting;
+    // The unknowns of iterations come after the rates: only series have a use for them.
+    let rates = Routine { results: rate.results[..states].to_vec(), ..rate.clone() };
     Codes {
         constants: code(constants),
-        rate: code(rate),
+        rate: code(&rates),
         guards: code(guards),
         loops: code(loops),
         reactions: code(reactions),

@@ -6,31 +6,38 @@
 //!
 //! Each operation and its operands are the routine's, so the values have the bits of generated code in any scalar.
 
+use std::any::Any;
 use std::collections::HashMap;
 use std::mem::{Discriminant, discriminant};
+use std::sync::OnceLock;
 
-use bg_compiler::expr::{Function, Symbol};
-use bg_compiler::program::{Operand, Operation, Routine};
+use bg_compiler::expr::{self, Symbol};
+use bg_compiler::program::{Operation, Routine};
 use bg_model::scalar::Scalar;
+use bg_native::{Function, Inputs, Operand, Program};
 
 /// A place in the row of values.
 type Place = u32;
 
 /// A program, whatever the scalar.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug)]
 pub struct Code {
+    /// What it evaluates.
+    program: Program,
     /// What stands in the first places as long as the model is the same.
     fixed: Vec<Fixed>,
-    /// What is read anew, in the places after these.
-    read: Vec<Symbol>,
-    /// The operations.
-    batches: Vec<Batch>,
+    /// How many states stand in the places after these.
+    states: usize,
+    /// How many other numbers that are read anew stand in the places after these.
+    reads: usize,
+    /// What these are, where they are symbols.
+    symbols: Vec<Symbol>,
     /// Whether it reads what iterations find.
     reads_found: bool,
-    /// The places of the results.
-    results: Vec<Place>,
-    /// How many places there are.
-    places: usize,
+    /// For the interpreter, made when it is first interpreted.
+    batches: OnceLock<Batches>,
+    /// In machine code, made when that pays; none where the machine has no back end.
+    function: OnceLock<Option<Function>>,
 }
 
 /// What does not change between evaluations.
@@ -39,6 +46,16 @@ enum Fixed {
     Number(f64),
     /// An entry of the table of constants.
     Constant(u32),
+}
+
+/// What an interpreter reads.
+#[derive(Clone, Debug)]
+struct Batches {
+    batches: Vec<Batch>,
+    /// The places of the results.
+    results: Vec<Place>,
+    /// How many places there are.
+    places: usize,
 }
 
 /// Operations of one kind, whose results stand side by side.
@@ -51,47 +68,74 @@ enum Batch {
     Times(Vec<(Place, f64)>),
     Divide(Vec<[Place; 2]>),
     Negate(Vec<Place>),
-    Unary(Function, Vec<Place>),
-    Binary(Function, Vec<[Place; 2]>),
+    Unary(expr::Function, Vec<Place>),
+    Binary(expr::Function, Vec<[Place; 2]>),
     /// The switch, the place where it is negative, that where it is not.
     Select(Vec<(u32, [Place; 2])>),
 }
 
 /// The row of values of one program of one model.
-#[derive(Clone, Debug)]
-pub struct Row<S> {
+#[derive(Debug)]
+pub struct Row<S: Scalar> {
     values: Vec<S>,
+    /// None where it is interpreted.
+    call: Option<Call<S>>,
+    /// How often it is interpreted before it is translated.
+    waits: u32,
+}
+
+/// How machine code is called with numbers of this kind.
+type Call<S> = for<'a> fn(&Function, Inputs<'a, S, <S as Scalar>::Switch>, &mut [S]);
+
+/// What evaluates programs. All give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BackEnd {
+    /// An interpreter, for any numbers on any machine.
+    Interpreter,
+    /// Machine code for doubles where the machine has a back end, after so many evaluations by the interpreter; else
+    /// the interpreter.
+    MachineCode {
+        /// Evaluations of a program before it is translated.
+        after: u32,
+    },
+}
+
+/// Translation takes as long as so many evaluations by the interpreter: measured in `docs/benchmarks/text.md`.
+const PAYS: u32 = 500;
+
+impl Default for BackEnd {
+    /// Machine code where it pays.
+    fn default() -> Self {
+        Self::MachineCode { after: PAYS }
+    }
+}
+
+impl BackEnd {
+    /// How machine code is called, where there is some for these numbers, and after how many evaluations.
+    fn call<S: Scalar>(self) -> (Option<Call<S>>, u32) {
+        let of_doubles: Call<f64> = Function::call;
+        match self {
+            Self::Interpreter => (None, 0),
+            Self::MachineCode { after } => ((&of_doubles as &dyn Any).downcast_ref().copied(), after),
+        }
+    }
 }
 
 impl Code {
     /// The program of a routine.
     #[must_use]
     pub fn of(routine: &Routine) -> Self {
-        let mut code = Self::default();
         let mut places = Places::default();
-        let operands = routine.assignments.iter().flat_map(|of| of.operation.operands());
-        for operand in operands.chain(routine.results.iter().copied()) {
-            places.enter(operand, &mut code);
-        }
-        let mut next = places.begin(&code);
-        for batch in batches(routine) {
-            let operations: Vec<&Operation> = batch.iter().map(|&of| &routine.assignments[of].operation).collect();
-            code.batches.push(Batch::of(&operations, &|operand| places.of(&code, operand)));
-            for of in batch {
-                places.temporaries.insert(routine.assignments[of].target, next);
-                next += 1;
-            }
-        }
-        code.places = next as usize;
-        code.reads_found = code.read.iter().any(|symbol| matches!(symbol, Symbol::Found(_)));
-        code.results = routine.results.iter().map(|&result| places.of(&code, result)).collect();
-        code
+        let operations = routine.assignments.iter().map(|of| of.operation.map(|operand| places.of(operand))).collect();
+        let results = routine.results.iter().map(|&result| places.of(result)).collect();
+        let reads = places.symbols.len();
+        places.code(Program { operations, results }, reads)
     }
 
     /// How many results it has.
     #[must_use]
     pub fn results(&self) -> usize {
-        self.results.len()
+        self.program.results.len()
     }
 
     /// Whether it reads what iterations find.
@@ -102,81 +146,167 @@ impl Code {
 
     /// The row of a model with these constants.
     #[must_use]
-    pub fn row<S: Scalar>(&self, constants: &[S]) -> Row<S> {
+    pub fn row<S: Scalar>(&self, constants: &[S], back_end: BackEnd) -> Row<S> {
         let fixed = self.fixed.iter().map(|fixed| match *fixed {
             Fixed::Number(value) => S::from_f64(value),
             Fixed::Constant(index) => constants[index as usize],
         });
         let mut values: Vec<S> = fixed.collect();
-        values.resize(self.places, S::from_f64(0.0));
-        Row { values }
+        values.resize(self.inputs(), S::from_f64(0.0));
+        let (call, waits) = back_end.call();
+        Row { values, call, waits }
     }
 
-    /// Evaluates it, and writes its first results, as many as `to` has places.
+    /// How many places there are before those of operations.
+    fn inputs(&self) -> usize {
+        self.fixed.len() + self.states + self.reads
+    }
+
+    /// Evaluates it at the states `x`, with a place for each result in `to`.
     pub fn evaluate<S: Scalar>(
         &self,
         row: &mut Row<S>,
+        x: &[S],
         symbol: impl Fn(Symbol) -> S,
         negative: &[S::Switch],
         to: &mut [S],
     ) {
-        let values = &mut row.values[..];
-        let mut at = self.fixed.len();
-        for &read in &self.read {
-            values[at] = symbol(read);
-            at += 1;
+        let begin = self.fixed.len() + self.states;
+        row.values[begin..].iter_mut().zip(&self.symbols).for_each(|(to, &read)| *to = symbol(read));
+        if let Some((function, call)) = self.function(row) {
+            let (fixed, read) = (&row.values[..self.fixed.len()], &row.values[begin..begin + self.reads]);
+            call(function, Inputs { fixed, states: x, read, negative }, to);
+        } else {
+            self.interpret(row, x, negative, to);
         }
-        for batch in &self.batches {
+    }
+
+    /// The same, of a program that reads numbers in a list.
+    pub fn evaluate_listed<S: Scalar>(
+        &self,
+        row: &mut Row<S>,
+        x: &[S],
+        read: &[S],
+        negative: &[S::Switch],
+        to: &mut [S],
+    ) {
+        if let Some((function, call)) = self.function(row) {
+            call(function, Inputs { fixed: &row.values[..self.fixed.len()], states: x, read, negative }, to);
+        } else {
+            let begin = self.fixed.len() + self.states;
+            row.values[begin..begin + self.reads].copy_from_slice(&read[..self.reads]);
+            self.interpret(row, x, negative, to);
+        }
+    }
+
+    fn interpret<S: Scalar>(&self, row: &mut Row<S>, x: &[S], negative: &[S::Switch], to: &mut [S]) {
+        let Batches { batches, results, places } = self.batches.get_or_init(|| self.batched());
+        row.values.resize(*places, S::from_f64(0.0));
+        let values = &mut row.values[..];
+        values[self.fixed.len()..][..self.states].copy_from_slice(&x[..self.states]);
+        let mut at = self.inputs();
+        for batch in batches {
             at += batch.evaluate(values, at, negative);
         }
-        to.iter_mut().zip(&self.results).for_each(|(to, &place)| *to = values[place as usize]);
+        to.iter_mut().zip(results).for_each(|(to, &place)| *to = values[place as usize]);
+    }
+
+    /// The machine code, where it is there or pays.
+    fn function<S: Scalar>(&self, row: &mut Row<S>) -> Option<(&Function, Call<S>)> {
+        let call = row.call?;
+        let function = match self.function.get() {
+            Some(known) => known,
+            None if row.waits > 0 => {
+                row.waits -= 1;
+                return None;
+            }
+            None => self.translated(),
+        };
+        function.as_ref().map(|function| (function, call))
+    }
+
+    fn translated(&self) -> &Option<Function> {
+        self.function.get_or_init(|| Function::of(&self.program))
+    }
+
+    /// Makes machine code of it; whether there is some.
+    pub fn translate(&self) -> bool {
+        self.translated().is_some()
     }
 
     /// The results of one evaluation by itself, with these constants.
     pub fn once<S: Scalar>(&self, constants: &[S], symbol: impl Fn(Symbol) -> S) -> Vec<S> {
         let mut results = vec![S::from_f64(0.0); self.results()];
-        self.evaluate(&mut self.row(constants), symbol, &[], &mut results);
+        self.evaluate(&mut self.row(constants, BackEnd::Interpreter), &[], symbol, &[], &mut results);
         results
+    }
+
+    /// The operations in batches.
+    fn batched(&self) -> Batches {
+        let operations = &self.program.operations;
+        let order = order(operations, &|operand| self.number(operand).is_some());
+        let mut values = vec![0; operations.len()];
+        order.iter().flatten().zip(place(self.inputs())..).for_each(|(&of, place)| values[of] = place);
+        let (first_state, first_read) = (place(self.fixed.len()), place(self.fixed.len() + self.states));
+        let place = |operand: Operand| match operand {
+            Operand::Fixed(index) => index,
+            Operand::State(index) => first_state + index,
+            Operand::Read(index) => first_read + index,
+            Operand::Value(index) => values[index as usize],
+        };
+        let batch = |batch: &Vec<usize>| {
+            let operations: Vec<_> = batch.iter().map(|&of| &operations[of]).collect();
+            Batch::of(&operations, &place, &|operand| self.number(operand))
+        };
+        Batches {
+            batches: order.iter().map(batch).collect(),
+            results: self.program.results.iter().map(|&result| place(result)).collect(),
+            places: self.inputs() + operations.len(),
+        }
+    }
+
+    /// The number that an operand is.
+    fn number(&self, operand: Operand) -> Option<f64> {
+        match operand {
+            Operand::Fixed(index) => match self.fixed[index as usize] {
+                Fixed::Number(value) => Some(value),
+                Fixed::Constant(_) => None,
+            },
+            _ => None,
+        }
     }
 }
 
 /// Which operations are one batch.
-type Kind = (Discriminant<Operation>, bool, Option<Function>);
+type Kind = (Discriminant<Operation<Operand>>, bool, Option<expr::Function>);
 
-fn kind(of: &Operation) -> Kind {
-    let is_times = matches!(of, Operation::Multiply(a, b) if number(a).or(number(b)).is_some());
+fn kind(of: &Operation<Operand>, is_number: &dyn Fn(Operand) -> bool) -> Kind {
+    let is_times = matches!(of, Operation::Multiply(a, b) if is_number(*a) || is_number(*b));
     let function = if let Operation::Call(function, _) = of { Some(*function) } else { None };
     (discriminant(of), is_times, function)
 }
 
-fn number(of: &Operand) -> Option<f64> {
-    if let Operand::Number(value) = of { Some(*value) } else { None }
-}
-
-/// The assignments in batches: of what is ready, each time all of the kind that there is most of.
-fn batches(routine: &Routine) -> Vec<Vec<usize>> {
-    let assignments = &routine.assignments;
-    let by_target: HashMap<u32, usize> =
-        assignments.iter().enumerate().map(|(index, assignment)| (assignment.target, index)).collect();
-    let mut users = vec![Vec::new(); assignments.len()];
-    let mut missing = vec![0_usize; assignments.len()];
-    for (index, assignment) in assignments.iter().enumerate() {
-        for operand in assignment.operation.operands() {
-            if let Operand::Temporary(temporary) = operand {
-                users[by_target[&temporary]].push(index);
+/// The operations in batches: of what is ready, each time all of the kind that there is most of.
+fn order(operations: &[Operation<Operand>], is_number: &dyn Fn(Operand) -> bool) -> Vec<Vec<usize>> {
+    let mut users = vec![Vec::new(); operations.len()];
+    let mut missing = vec![0_usize; operations.len()];
+    for (index, operation) in operations.iter().enumerate() {
+        for operand in operation.operands() {
+            if let Operand::Value(value) = operand {
+                users[value as usize].push(index);
                 missing[index] += 1;
             }
         }
     }
     let mut ready: Vec<(Kind, Vec<usize>)> = Vec::new();
     let enter = |ready: &mut Vec<(Kind, Vec<usize>)>, index: usize| {
-        let kind = kind(&assignments[index].operation);
+        let kind = kind(&operations[index], is_number);
         match ready.iter_mut().find(|(known, _)| *known == kind) {
             Some((_, of)) => of.push(index),
             None => ready.push((kind, vec![index])),
         }
     };
-    (0..assignments.len()).filter(|&index| missing[index] == 0).for_each(|index| enter(&mut ready, index));
+    (0..operations.len()).filter(|&index| missing[index] == 0).for_each(|index| enter(&mut ready, index));
     let mut batches = Vec::new();
     while let Some((_, most)) = ready.iter_mut().max_by_key(|(_, of)| of.len()).filter(|(_, of)| !of.is_empty()) {
         let mut batch = std::mem::take(most);
@@ -192,56 +322,59 @@ fn batches(routine: &Routine) -> Vec<Vec<usize>> {
     batches
 }
 
-/// Where operands stand.
-#[derive(Default)]
-struct Places {
+/// Where what a program reads stands.
+#[derive(Debug, Default)]
+pub struct Places {
+    fixed: Vec<Fixed>,
+    states: usize,
     numbers: HashMap<u64, Place>,
     constants: HashMap<u32, Place>,
-    symbols: HashMap<Symbol, Place>,
-    temporaries: HashMap<u32, Place>,
+    /// What is read that is no state.
+    pub symbols: Vec<Symbol>,
+    of_symbols: HashMap<Symbol, Place>,
 }
 
 impl Places {
-    /// Gives a place to what is no temporary.
-    fn enter(&mut self, operand: Operand, code: &mut Code) {
-        let [next_fixed, next_read] = [code.fixed.len(), code.read.len()].map(place);
+    /// The operand of a program that an operand of a routine is.
+    pub fn of(&mut self, operand: bg_compiler::program::Operand) -> Operand {
+        use bg_compiler::program::Operand as Of;
+        let Self { fixed, states, numbers, constants, symbols, of_symbols } = self;
+        let mut enter = |entry| entered(fixed, entry);
         match operand {
-            Operand::Number(value) => {
-                self.numbers.entry(value.to_bits()).or_insert_with(|| {
-                    code.fixed.push(Fixed::Number(value));
-                    next_fixed
-                });
+            Of::Number(value) => {
+                Operand::Fixed(*numbers.entry(value.to_bits()).or_insert_with(|| enter(Fixed::Number(value))))
             }
-            Operand::Constant(index) => {
-                self.constants.entry(index).or_insert_with(|| {
-                    code.fixed.push(Fixed::Constant(index));
-                    next_fixed
-                });
+            Of::Constant(index) => {
+                Operand::Fixed(*constants.entry(index).or_insert_with(|| enter(Fixed::Constant(index))))
             }
-            Operand::Symbol(symbol) => {
-                self.symbols.entry(symbol).or_insert_with(|| {
-                    code.read.push(symbol);
-                    next_read
-                });
+            Of::Symbol(Symbol::State(index)) => {
+                *states = (*states).max(index as usize + 1);
+                Operand::State(index)
             }
-            Operand::Temporary(_) => {}
+            Of::Symbol(symbol) => Operand::Read(*of_symbols.entry(symbol).or_insert_with(|| entered(symbols, symbol))),
+            Of::Temporary(index) => Operand::Value(index),
         }
     }
 
-    /// The first place after these.
-    fn begin(&self, code: &Code) -> Place {
-        place(code.fixed.len() + code.read.len())
-    }
-
-    /// The place of an operand.
-    fn of(&self, code: &Code, operand: Operand) -> Place {
-        match operand {
-            Operand::Number(value) => self.numbers[&value.to_bits()],
-            Operand::Constant(index) => self.constants[&index],
-            Operand::Symbol(symbol) => self.symbols[&symbol] + place(code.fixed.len()),
-            Operand::Temporary(index) => self.temporaries[&index],
+    /// A program whose operands stand here, and which reads so many other numbers.
+    pub fn code(self, program: Program, reads: usize) -> Code {
+        Code {
+            program,
+            fixed: self.fixed,
+            states: self.states,
+            reads,
+            reads_found: self.symbols.iter().any(|symbol| matches!(symbol, Symbol::Found(_))),
+            symbols: self.symbols,
+            batches: OnceLock::new(),
+            function: OnceLock::new(),
         }
     }
+}
+
+/// The place of a new entry.
+fn entered<T>(list: &mut Vec<T>, entry: T) -> Place {
+    list.push(entry);
+    place(list.len() - 1)
 }
 
 fn place(index: usize) -> Place {
@@ -250,18 +383,25 @@ fn place(index: usize) -> Place {
 
 impl Batch {
     /// Operations of one kind.
-    fn of(operations: &[&Operation], place: &dyn Fn(Operand) -> Place) -> Self {
+    fn of(
+        operations: &[&Operation<Operand>],
+        place: &dyn Fn(Operand) -> Place,
+        number: &dyn Fn(Operand) -> Option<f64>,
+    ) -> Self {
         let places = || operations.iter().map(|of| of.operands().into_iter().map(place).collect::<Vec<_>>());
         let one = || places().map(|places| places[0]).collect();
         let two = || places().map(|places| [places[0], places[1]]).collect();
         match operations[0] {
             Operation::Add(..) => Self::Add(two()),
             Operation::Subtract(..) => Self::Subtract(two()),
-            Operation::Multiply(a, b) if number(a).or(number(b)).is_some() => {
-                let times = |of: &&Operation| match of {
-                    Operation::Multiply(Operand::Number(factor), other)
-                    | Operation::Multiply(other, Operand::Number(factor)) => (place(*other), *factor),
-                    _ => unreachable!("a batch has operations of one kind"),
+            Operation::Multiply(a, b) if number(*a).or(number(*b)).is_some() => {
+                let times = |of: &&Operation<Operand>| {
+                    let [a, b] = of.operands()[..] else { unreachable!("a product has two factors") };
+                    match (number(a), number(b)) {
+                        (Some(factor), _) => (place(b), factor),
+                        (_, Some(factor)) => (place(a), factor),
+                        _ => unreachable!("a batch has operations of one kind"),
+                    }
                 };
                 Self::Times(operations.iter().map(times).collect())
             }
@@ -271,7 +411,7 @@ impl Batch {
             Operation::Call(function, _) if function.arity() == 2 => Self::Binary(*function, two()),
             Operation::Call(function, _) => Self::Unary(*function, one()),
             Operation::Select { .. } => {
-                let choice = |of: &&Operation| match of {
+                let choice = |of: &&Operation<Operand>| match of {
                     Operation::Select { switch, negative, positive } => (*switch, [place(*negative), place(*positive)]),
                     _ => unreachable!("a batch has operations of one kind"),
                 };
@@ -313,27 +453,27 @@ fn each<T, S>(next: &mut [S], of: &[T], value: impl Fn(&T) -> S) -> usize {
 }
 
 /// A function of one argument.
-pub fn of_one<S: Scalar>(function: Function) -> fn(S) -> S {
+pub fn of_one<S: Scalar>(function: expr::Function) -> fn(S) -> S {
     match function {
-        Function::Sqrt => S::sqrt,
-        Function::Sin => S::sin,
-        Function::Cos => S::cos,
-        Function::Tan => S::tan,
-        Function::Asin => S::asin,
-        Function::Acos => S::acos,
-        Function::Exp => S::exp,
-        Function::Ln => S::ln,
-        Function::Tanh => S::tanh,
-        Function::Abs => S::abs,
-        Function::Atan2 | Function::Pow => unreachable!("{function:?} has two arguments"),
+        expr::Function::Sqrt => S::sqrt,
+        expr::Function::Sin => S::sin,
+        expr::Function::Cos => S::cos,
+        expr::Function::Tan => S::tan,
+        expr::Function::Asin => S::asin,
+        expr::Function::Acos => S::acos,
+        expr::Function::Exp => S::exp,
+        expr::Function::Ln => S::ln,
+        expr::Function::Tanh => S::tanh,
+        expr::Function::Abs => S::abs,
+        expr::Function::Atan2 | expr::Function::Pow => unreachable!("{function:?} has two arguments"),
     }
 }
 
 /// A function of two arguments.
-pub fn of_two<S: Scalar>(function: Function) -> fn(S, S) -> S {
+pub fn of_two<S: Scalar>(function: expr::Function) -> fn(S, S) -> S {
     match function {
-        Function::Atan2 => S::atan2,
-        Function::Pow => S::powf,
+        expr::Function::Atan2 => S::atan2,
+        expr::Function::Pow => S::powf,
         _ => unreachable!("{function:?} has one argument"),
     }
 }

@@ -17,7 +17,8 @@ use bg_model::scalar::Scalar;
 use bg_model::start::{kept, sides};
 
 use crate::blueprint::{Alone, Blueprint, Codes};
-use crate::code::{Code, Row};
+use crate::code::{BackEnd, Code, Row};
+use crate::series::SeriesRow;
 
 /// A model with its parameters and inputs, calculating in `S`.
 #[derive(Debug)]
@@ -29,6 +30,7 @@ pub struct Interpreted<S: Scalar = f64> {
     pub(crate) decided: Decided,
     /// The constants of the running programs.
     pub(crate) constants: Vec<S>,
+    pub(crate) back_end: BackEnd,
     pub(crate) rows: Rows<S>,
 }
 
@@ -44,7 +46,7 @@ pub struct Decided {
 /// The rows of values of the programs that are evaluated while a model runs; those with constants of their own are made
 /// when they are first evaluated.
 #[derive(Debug)]
-pub(crate) struct Rows<S> {
+pub(crate) struct Rows<S: Scalar> {
     pub rate: RefCell<Row<S>>,
     pub guards: RefCell<Row<S>>,
     pub loops: RefCell<Row<S>>,
@@ -62,6 +64,7 @@ pub(crate) struct Rows<S> {
     pub impacts: Own<S>,
     pub sizes: Own<S>,
     pub not_finite: Own<S>,
+    pub series: OnceCell<RefCell<SeriesRow<S>>>,
 }
 
 /// A row of a program with constants of its own.
@@ -115,7 +118,14 @@ impl<S: Scalar> Interpreted<S> {
         }
         let inputs: Vec<Input> = (0..named.len()).map(|index| inputs.get(index).cloned().unwrap_or_default()).collect();
         let decided = decide(blueprint, &parameters, &inputs);
-        Ok(Self::made(blueprint, parameters, values, inputs, decided))
+        Ok(Self::made(blueprint, parameters, values, inputs, decided, BackEnd::default()))
+    }
+
+    /// The same model, evaluated by this back end.
+    #[must_use]
+    pub fn by(self, back_end: BackEnd) -> Self {
+        let rows = Rows::of(&self.blueprint.programs, &self.constants, back_end);
+        Self { back_end, rows, ..self }
     }
 
     fn made(
@@ -124,18 +134,19 @@ impl<S: Scalar> Interpreted<S> {
         values: Vec<S>,
         inputs: Vec<Input>,
         decided: Decided,
+        back_end: BackEnd,
     ) -> Self {
         let constants = table(&blueprint.programs.constants, &values, &decided);
-        let rows = Rows::of(&blueprint.programs, &constants);
-        Self { blueprint: Arc::clone(blueprint), parameters, values, inputs, decided, constants, rows }
+        let rows = Rows::of(&blueprint.programs, &constants, back_end);
+        Self { blueprint: Arc::clone(blueprint), parameters, values, inputs, decided, constants, back_end, rows }
     }
 
     /// The model in another scalar.
     #[must_use]
     pub fn in_scalar<T: Scalar>(&self) -> Interpreted<T> {
-        let Self { blueprint, parameters, inputs, decided, .. } = self;
+        let Self { blueprint, parameters, inputs, decided, back_end, .. } = self;
         let values = parameters.iter().copied().map(T::from_f64).collect();
-        Interpreted::made(blueprint, parameters.clone(), values, inputs.clone(), decided.clone())
+        Interpreted::made(blueprint, parameters.clone(), values, inputs.clone(), decided.clone(), *back_end)
     }
 
     pub(crate) fn programs(&self) -> &Codes {
@@ -146,7 +157,6 @@ impl<S: Scalar> Interpreted<S> {
     pub(crate) fn symbol(&self, symbol: Symbol, moment: &Moment<'_, S>) -> S {
         match symbol {
             Symbol::Time => moment.t,
-            Symbol::State(index) => moment.x[index as usize],
             Symbol::Input(index) => self.inputs[index as usize].value(moment.t),
             Symbol::Slope(index) => self.inputs[index as usize].slope(moment.t),
             Symbol::Found(index) => moment.found[index as usize],
@@ -167,12 +177,12 @@ impl<S: Scalar> Interpreted<S> {
         };
         let moment = if found.is_empty() { moment } else { Moment { found: &found, ..moment } };
         let row = &mut *row.borrow_mut();
-        code.evaluate(row, |symbol| self.symbol(symbol, &moment), moment.negative, to);
+        code.evaluate(row, moment.x, |symbol| self.symbol(symbol, &moment), moment.negative, to);
     }
 
     /// The row of a program with these constants of its own.
     pub(crate) fn own<'a>(&self, row: &'a Own<S>, constants: &Code, code: &Code) -> &'a RefCell<Row<S>> {
-        row.get_or_init(|| RefCell::new(code.row(&table(constants, &self.values, &self.decided))))
+        row.get_or_init(|| RefCell::new(code.row(&table(constants, &self.values, &self.decided), self.back_end)))
     }
 
     /// Writes what a program with constants of its own gives at a moment.
@@ -234,7 +244,15 @@ fn decide(blueprint: &Arc<Blueprint>, parameters: &[f64], inputs: &[Input]) -> D
     let mut decided =
         Decided { kept: vec![1.0; blueprint.closing_rows], sides: vec![1.0; blueprint.statics.start.sides] };
     let made = |decided: &Decided| {
-        Interpreted::<f64>::made(blueprint, parameters.to_vec(), parameters.to_vec(), inputs.to_vec(), decided.clone())
+        let (parameters, inputs) = (parameters.to_vec(), inputs.to_vec());
+        Interpreted::<f64>::made(
+            blueprint,
+            parameters.clone(),
+            parameters,
+            inputs,
+            decided.clone(),
+            BackEnd::Interpreter,
+        )
     };
     if !decided.sides.is_empty() {
         decided.sides = sides(&made(&decided));
@@ -260,7 +278,7 @@ pub(crate) fn of_parameters<S: Scalar>(
         symbol => of_decided(symbol, decided),
     };
     let constants = constants.once(&[], symbol);
-    code.evaluate(&mut code.row(&constants), symbol, &[], to);
+    code.evaluate(&mut code.row(&constants, BackEnd::Interpreter), &[], symbol, &[], to);
 }
 
 fn of_decided<S: Scalar>(symbol: Symbol, decided: Option<&Decided>) -> S {
@@ -280,8 +298,8 @@ fn table<S: Scalar>(constants: &Code, values: &[S], decided: &Decided) -> Vec<S>
 }
 
 impl<S: Scalar> Rows<S> {
-    fn of(programs: &Codes, running: &[S]) -> Self {
-        let row = |code: &Code| RefCell::new(code.row(running));
+    fn of(programs: &Codes, running: &[S], back_end: BackEnd) -> Self {
+        let row = |code: &Code| RefCell::new(code.row(running, back_end));
         Self {
             rate: row(&programs.rate),
             guards: row(&programs.guards),
@@ -300,6 +318,7 @@ impl<S: Scalar> Rows<S> {
             impacts: OnceCell::new(),
             sizes: OnceCell::new(),
             not_finite: OnceCell::new(),
+            series: OnceCell::new(),
         }
     }
 }

@@ -13,5 +13,6 @@ mod statics;
 mod text;
 
 pub use blueprint::Blueprint;
+pub use code::BackEnd;
 pub use interpreted::Interpreted;
 pub use text::{Counted, Fault, Graph, Model, Wanted, load, load_wanted};

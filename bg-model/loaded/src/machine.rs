@@ -3,6 +3,7 @@
 //! In: an [`Interpreted`] model. Out: [`Dynamics`], [`Machine`] and [`Starting`] for it, in any scalar; what studies
 //! make of it anew.
 
+use std::cell::RefCell;
 use std::ops::Range;
 use std::rc::Rc;
 
@@ -47,7 +48,6 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn rate(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]) {
-        // The unknowns of iterations come after the rates.
         self.evaluate(&self.programs().rate, &self.rows.rate, Moment::at(t, x, negative), dx);
     }
 
@@ -179,8 +179,10 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     fn expand(&self, t: S, h: S, negative: &[S::Switch], rows: &mut [S], series: &mut [S]) {
         let (code, states) = (&self.programs().series, self.states());
         let found = if code.reads_found() { self.found(t, &series[..states], negative) } else { Vec::new() };
-        let expansion = Expansion { constants: &self.constants, t, h, negative, states, found };
-        code.expand(expansion, |symbol| self.symbol(symbol, &Moment::at(t, &[], negative)), rows, series);
+        let expansion = Expansion { t, h, negative, states, found };
+        let row = self.rows.series.get_or_init(|| RefCell::new(code.row(&self.constants, self.back_end)));
+        let input = |symbol| self.symbol(symbol, &Moment::at(t, &[], negative));
+        code.expand(expansion, &mut row.borrow_mut(), input, rows, series);
     }
 
     fn held(&self) -> Option<Held> {
@@ -350,7 +352,7 @@ impl Differentiable for Interpreted {
 
 impl<S: Scalar> Liftable<S> for Interpreted {
     fn lifted(&self, values: &[S]) -> Result<Rc<dyn Machine<S>>, ParameterError> {
-        Ok(Rc::new(Interpreted::of_values(&self.blueprint, values.to_vec(), &self.inputs)?))
+        Ok(Rc::new(Interpreted::of_values(&self.blueprint, values.to_vec(), &self.inputs)?.by(self.back_end)))
     }
 }
 

@@ -33,7 +33,7 @@ pub struct Statics {
 /// The tables of one model.
 pub fn statics(of: &Tables) -> Statics {
     Statics {
-        description: Box::leak(Box::new(description(&of.description))),
+        description: leaked(&of.description),
         start: start(&of.start),
         required: each(&of.required, requirement),
         held: of.held.as_ref().map(held),
@@ -44,6 +44,11 @@ pub fn statics(of: &Tables) -> Statics {
             unknowns => Sparsity::Bordered { places: places(&of.jacobian), unknowns },
         },
     }
+}
+
+/// A description.
+pub fn leaked(of: &tables::Description) -> &'static Description {
+    Box::leak(Box::new(description(of)))
 }
 
 fn text(of: &str) -> &'static str {

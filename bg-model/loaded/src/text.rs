@@ -6,12 +6,15 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use bg_compiler::pipeline;
+use bg_compiler::pipeline::{self, Compiled, Derived, Known};
 use bg_compiler::source::{part, syntax};
+use bg_compiler::tables;
 pub use bg_compiler::tables::Counted;
+use bg_model::description::Description;
 use proc_macro2::{Span, TokenStream, TokenTree};
 
 use crate::blueprint::Blueprint;
+use crate::statics;
 
 /// A graph with its models.
 #[derive(Clone, Debug)]
@@ -27,9 +30,9 @@ pub struct Graph {
 /// A model of a graph.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Its name.
-    pub name: String,
-    /// What it is made of; none of a scene that was not asked for.
+    /// Its tables; of a graph that was not asked for what it declares, of such a scene its name.
+    pub description: &'static Description,
+    /// What it is made of; none of what was not asked for.
     pub blueprint: Option<Arc<Blueprint>>,
 }
 
@@ -72,7 +75,8 @@ pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
 /// What is wanted of a text.
 #[derive(Clone, Copy)]
 pub struct Wanted<'a> {
-    /// Which scenes after each graph's first model, by their names: others have no blueprints, and are not looked at.
+    /// Which models, by their names; where there are none of them in a graph, its first. Others have no blueprints, and
+    /// such scenes are not looked at.
     pub scene: &'a dyn Fn(&str) -> bool,
     /// Of which programs descriptions tell the operations. To run a model not all of them have to be made.
     pub counted: Counted,
@@ -98,23 +102,49 @@ pub fn load_wanted(text: &str, wanted: Wanted<'_>) -> Result<Vec<Graph>, Vec<Fau
     }
     let compiled = pipeline::models_where(&source, wanted.scene).map_err(of_stage)?;
     let mut graphs: Vec<Graph> = Vec::new();
-    for model in compiled {
-        let (name, others) = (model.source.name.text.clone(), model.scenes.clone());
-        let (is_literal, stands_for_graph) = (!model.is_scene, model.stands_for_graph());
-        let blueprint = Some(Arc::new(Blueprint::of(model, wanted.counted)));
-        match graphs.last_mut().filter(|_| !stands_for_graph) {
-            Some(graph) => {
-                let own = graph.models.iter_mut().find(|own| own.name == name);
-                own.expect("its graph names it").blueprint = blueprint;
-            }
-            None => {
-                let others = others.into_iter().map(|name| Model { name, blueprint: None });
-                let models = [Model { name: name.clone(), blueprint }].into_iter().chain(others).collect();
-                graphs.push(Graph { name, models, is_literal });
+    for known in compiled {
+        match known {
+            Known::Graph(derived, scenes) => graphs.push(Graph::begun(Model::declared(&derived), scenes, true)),
+            Known::Model(model) => {
+                let (scenes, is_literal, stands_for_graph) =
+                    (model.scenes.clone(), !model.is_scene, model.stands_for_graph());
+                let model = Model::of(*model, wanted.counted);
+                match graphs.last_mut().filter(|_| !stands_for_graph) {
+                    Some(graph) => {
+                        let own = graph.models.iter_mut().find(|own| own.description.name == model.description.name);
+                        *own.expect("its graph names it") = model;
+                    }
+                    None => graphs.push(Graph::begun(model, scenes, is_literal)),
+                }
             }
         }
     }
     Ok(graphs)
+}
+
+impl Graph {
+    /// The graph of a first model, whose `scenes` are known by their names.
+    fn begun(first: Model, scenes: Vec<String>, is_literal: bool) -> Self {
+        let name = first.description.name.to_owned();
+        let models = [first].into_iter().chain(scenes.into_iter().map(Model::named)).collect();
+        Self { name, models, is_literal }
+    }
+}
+
+impl Model {
+    fn of(model: Compiled, counted: Counted) -> Self {
+        let blueprint = Arc::new(Blueprint::of(model, counted));
+        Self { description: blueprint.description(), blueprint: Some(blueprint) }
+    }
+
+    fn declared(derived: &Derived) -> Self {
+        Self { description: statics::leaked(&tables::declared(derived)), blueprint: None }
+    }
+
+    fn named(name: String) -> Self {
+        let description = Description { name: name.leak(), ..Description::default() };
+        Self { description: Box::leak(Box::new(description)), blueprint: None }
+    }
 }
 
 /// What stands in the calls of the macro, of a text that is a Rust file; none of other texts.

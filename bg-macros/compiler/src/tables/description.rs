@@ -6,13 +6,13 @@ use super::Counted;
 use super::drawing::{Drawing, drawing};
 use crate::graph::causality::{CausalGraph, End};
 use crate::graph::{self, BondGraph, NodeKind};
-use crate::pipeline::Compiled;
+use crate::pipeline::{Compiled, Derived};
 use crate::program::Counts;
 use crate::source::mechanism::{self, Part};
 use crate::system::equations::{self, Origin, StateEquations};
 
 /// What a model consists of.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Description {
     /// The model's name.
     pub name: String,
@@ -198,6 +198,19 @@ pub fn description(model: &Compiled, counted: Counted) -> Description {
         equations: equations.texts.clone(),
         operations: operations(model, counted),
         drawing: drawing(model),
+    }
+}
+
+/// What is declared in a graph of which no model is made: its name, parameters and inputs.
+#[must_use]
+pub fn declared(derived: &Derived) -> Description {
+    let graph = &derived.causal.graph;
+    Description {
+        name: graph.name.text.clone(),
+        doc: graph.docs.clone(),
+        parameters: derived.equations.parameters.iter().map(parameter).collect(),
+        inputs: graph.inputs.iter().map(input).collect(),
+        ..Description::default()
     }
 }
 

@@ -12,7 +12,7 @@ use crate::system::equations::{Quantity, StateEquations};
 pub type Place = Option<usize>;
 
 /// The look of a mechanism.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Drawing {
     /// Its bodies.
     pub bodies: Vec<Body>,

@@ -11,8 +11,8 @@ mod start;
 
 pub(crate) use description::element_of;
 pub use description::{
-    Bond, Bounds, Description, Element, Input, Named, Output, Parameter, State, StateKind, Switch, description,
-    parameter,
+    Bond, Bounds, Description, Element, Input, Named, Output, Parameter, State, StateKind, Switch, declared,
+    description, parameter,
 };
 pub use drawing::{Body, Drawing, Place, drawing};
 pub use elimination::{EliminationTable, Slot, elimination};

@@ -15,6 +15,8 @@ pub use functions::{acos, asin, atan2, cos, exp, ln, power, powf, sin, sqrt, tan
 
 use core::ops::IndexMut;
 
+use pulp::NullaryFnOnce;
+
 use crate::model::scalar::{Pair, Scalar};
 
 /// Rows of numbers, one for each order.
@@ -74,6 +76,79 @@ pub fn inner_product<S: Scalar>(rows: &(impl Rows<S> + ?Sized), k: usize, left: 
         _ if k.is_multiple_of(2) => ascending(1, k),
         _ => ascending(2, k - 1) + (rows[1][left] * rows[k - 1][right] + rows[k - 1][left] * rows[1][right]),
     }
+}
+
+/// What [`inner_product`] gives at order `k` for products side by side: the left factors of as many as there are `sums`
+/// have the first places of `rows`, the right ones the next. Both are a multiple of 4.
+pub fn inner_products<S: Scalar>(rows: &Flat<'_, S>, k: usize, sums: &mut [S]) {
+    S::in_vectors(SideBySide { rows, k, sums });
+}
+
+/// Inner products, in the vectors of the machine.
+struct SideBySide<'a, S> {
+    rows: &'a Flat<'a, S>,
+    k: usize,
+    sums: &'a mut [S],
+}
+
+impl<S: Scalar> NullaryFnOnce for SideBySide<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let count = self.sums.len();
+        let (wide, narrow) = self.sums.as_chunks_mut::<16>();
+        for (sums, at) in wide.iter_mut().zip((0..).step_by(16)) {
+            some_inner_products(self.rows, self.k, at, count, sums);
+        }
+        let first = 16 * wide.len();
+        for (sums, at) in narrow.as_chunks_mut::<4>().0.iter_mut().zip((first..).step_by(4)) {
+            some_inner_products(self.rows, self.k, at, count, sums);
+        }
+    }
+}
+
+/// Some of `count` inner products, from the place `at` on.
+#[inline(always)]
+fn some_inner_products<S: Scalar, const M: usize>(
+    rows: &Flat<'_, S>,
+    k: usize,
+    at: usize,
+    count: usize,
+    to: &mut [S; M],
+) {
+    let row = |j: usize| &rows.numbers[j * rows.width..][..rows.width];
+    let mut sums = [S::from_f64(0.0); M];
+    if k == 2 {
+        sums = multiplied(window(row(1), at), window(row(1), count + at));
+    } else if k > 2 {
+        let ascending = if k.is_multiple_of(2) { 1..k } else { 2..k - 1 };
+        for j in ascending {
+            let (left, right): (&[S; M], &[S; M]) = (window(row(j), at), window(row(k - j), count + at));
+            for i in 0..M {
+                sums[i] = sums[i] + left[i] * right[i];
+            }
+        }
+        if !k.is_multiple_of(2) {
+            let (first, last) = (row(1), row(k - 1));
+            let begin: [S; M] = multiplied(window(first, at), window(last, count + at));
+            let end: [S; M] = multiplied(window(last, at), window(first, count + at));
+            for i in 0..M {
+                sums[i] = sums[i] + (begin[i] + end[i]);
+            }
+        }
+    }
+    *to = sums;
+}
+
+/// The products of numbers side by side.
+#[inline(always)]
+fn multiplied<S: Scalar, const M: usize>(left: &[S; M], right: &[S; M]) -> [S; M] {
+    let mut products = *left;
+    for (product, &right) in products.iter_mut().zip(right) {
+        *product = *product * right;
+    }
+    products
 }
 
 /// The product of `left` and `right`. Places: 2.

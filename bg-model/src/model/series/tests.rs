@@ -85,6 +85,21 @@ fn inner_products_leave_out_the_ends() {
 }
 
 #[test]
+fn inner_products_side_by_side_have_the_bits_of_single_ones() {
+    // Wide vectors, and what is left.
+    const COUNT: usize = 44;
+    let mut numbers: [f64; 9 * 90] = core::array::from_fn(|i| libm::sin((7 * i) as f64));
+    let rows = Flat { numbers: &mut numbers, width: 90 };
+    for k in 0..9 {
+        let mut sums = [1.0; COUNT];
+        inner_products(&rows, k, &mut sums);
+        for (i, sum) in sums.iter().enumerate() {
+            assert_eq!(sum.to_bits(), inner_product(&rows, k, i, COUNT + i).to_bits(), "{k} {i}");
+        }
+    }
+}
+
+#[test]
 fn the_angle_of_a_turning_point_is_the_angle_turned() {
     let angle = [2.5, 3.0, -0.5];
     let mut rows = [[0.0; 10]; ORDERS];

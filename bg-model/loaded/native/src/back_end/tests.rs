@@ -1,0 +1,220 @@
+use bg_expressions::expr;
+use bg_expressions::schedule::Operation;
+use bg_model::scalar::Scalar;
+use fastrand::Rng;
+
+use super::{Function, LONGEST};
+use crate::program::{Inputs, Operand, Program};
+
+const LENGTHS: [usize; 4] = [5, 4, 3, 2];
+const FUNCTIONS: [expr::Function; 12] = [
+    expr::Function::Sqrt,
+    expr::Function::Sin,
+    expr::Function::Cos,
+    expr::Function::Tan,
+    expr::Function::Asin,
+    expr::Function::Acos,
+    expr::Function::Atan2,
+    expr::Function::Exp,
+    expr::Function::Ln,
+    expr::Function::Tanh,
+    expr::Function::Abs,
+    expr::Function::Pow,
+];
+
+fn operand(random: &mut Rng, known: usize) -> Operand {
+    let mut place = |below: usize| u32::try_from(random.usize(..below)).expect("few places");
+    match place(8) {
+        0 => Operand::Fixed(place(LENGTHS[0])),
+        1 => Operand::State(place(LENGTHS[1])),
+        2 => Operand::Read(place(LENGTHS[2])),
+        _ if known > 0 => Operand::Value(place(known)),
+        _ => Operand::State(0),
+    }
+}
+
+fn operation(random: &mut Rng, known: usize) -> Operation<Operand> {
+    let (a, b) = (operand(random, known), operand(random, known));
+    match random.u32(..8) {
+        0 => Operation::Add(a, b),
+        1 => Operation::Subtract(a, b),
+        2 | 3 => Operation::Multiply(a, b),
+        4 => Operation::Divide(a, b),
+        5 => Operation::Negate(a),
+        6 => Operation::Select { switch: random.u32(..2), negative: a, positive: b },
+        _ => {
+            let function = FUNCTIONS[random.usize(..FUNCTIONS.len())];
+            Operation::Call(function, [a, b][..function.arity()].to_vec())
+        }
+    }
+}
+
+fn program(random: &mut Rng) -> Program {
+    let count = random.usize(..120);
+    let operations = (0..count).map(|known| operation(random, known)).collect();
+    let results = (0..random.usize(1..9)).map(|_| operand(random, count)).collect();
+    Program { operations, results }
+}
+
+/// One operation after the other.
+fn evaluated(program: &Program, inputs: Inputs<'_>) -> Vec<f64> {
+    let mut values: Vec<f64> = Vec::new();
+    for operation in &program.operations {
+        let of = |operand: Operand| value(operand, inputs, &values);
+        let value = match operation {
+            &Operation::Add(a, b) => of(a) + of(b),
+            &Operation::Subtract(a, b) => of(a) - of(b),
+            &Operation::Multiply(a, b) => of(a) * of(b),
+            &Operation::Divide(a, b) => of(a) / of(b),
+            &Operation::Negate(a) => -of(a),
+            &Operation::Select { switch, negative, positive } => {
+                if inputs.negative[switch as usize] {
+                    of(negative)
+                } else {
+                    of(positive)
+                }
+            }
+            Operation::Call(function, arguments) => {
+                called(*function, &arguments.iter().copied().map(of).collect::<Vec<_>>())
+            }
+        };
+        values.push(value);
+    }
+    program.results.iter().map(|&result| value(result, inputs, &values)).collect()
+}
+
+fn value(operand: Operand, inputs: Inputs<'_>, values: &[f64]) -> f64 {
+    match operand {
+        Operand::Fixed(place) => inputs.fixed[place as usize],
+        Operand::State(place) => inputs.states[place as usize],
+        Operand::Read(place) => inputs.read[place as usize],
+        Operand::Value(place) => values[place as usize],
+    }
+}
+
+fn called(function: expr::Function, arguments: &[f64]) -> f64 {
+    let a = arguments[0];
+    match function {
+        expr::Function::Sqrt => Scalar::sqrt(a),
+        expr::Function::Sin => Scalar::sin(a),
+        expr::Function::Cos => Scalar::cos(a),
+        expr::Function::Tan => Scalar::tan(a),
+        expr::Function::Asin => Scalar::asin(a),
+        expr::Function::Acos => Scalar::acos(a),
+        expr::Function::Atan2 => Scalar::atan2(a, arguments[1]),
+        expr::Function::Exp => Scalar::exp(a),
+        expr::Function::Ln => Scalar::ln(a),
+        expr::Function::Tanh => Scalar::tanh(a),
+        expr::Function::Abs => Scalar::abs(a),
+        expr::Function::Pow => Scalar::powf(a, arguments[1]),
+    }
+}
+
+/// What is no number has many forms.
+fn bits(of: &[f64]) -> Vec<u64> {
+    of.iter().map(|value| if value.is_nan() { u64::MAX } else { value.to_bits() }).collect()
+}
+
+#[test]
+fn random_programs_have_the_bits_of_one_operation_after_the_other() {
+    let mut random = Rng::with_seed(11);
+    let mut numbers = 0;
+    for round in 0..400 {
+        let program = program(&mut random);
+        let function = Function::of(&program).expect("this machine has a back end");
+        for _ in 0..4 {
+            let mut draw = |count: usize| -> Vec<f64> {
+                // Zeros of both signs are among them.
+                (0..count).map(|_| [0.0, -0.0, 4.0 * random.f64() - 2.0][random.usize(..3)]).collect()
+            };
+            let [fixed, states, read] = [LENGTHS[0], LENGTHS[1], LENGTHS[2]].map(&mut draw);
+            let negative = [random.bool(), random.bool()];
+            let inputs = Inputs { fixed: &fixed, states: &states, read: &read, negative: &negative };
+            let mut results = vec![7.0; program.results.len()];
+            function.call(inputs, &mut results);
+            assert_eq!(bits(&results), bits(&evaluated(&program, inputs)), "{round}: {program:?}");
+            numbers += results.iter().filter(|result| result.is_finite()).count();
+        }
+    }
+    assert!(numbers > 1000, "{numbers}");
+}
+
+fn sum() -> Function {
+    let operations = vec![
+        Operation::Add(Operand::State(1), Operand::Read(0)),
+        Operation::Select { switch: 1, negative: Operand::Value(0), positive: Operand::Fixed(2) },
+    ];
+    Function::of(&Program { operations, results: vec![Operand::Value(1)] }).expect("this machine has a back end")
+}
+
+fn call(fixed: usize, states: usize, read: usize, switches: usize, results: usize) {
+    let numbers = [1.0; 8];
+    let (fixed, states, read, negative) =
+        (&numbers[..fixed], &numbers[..states], &numbers[..read], &[false; 4][..switches]);
+    sum().call(Inputs { fixed, states, read, negative }, &mut vec![0.0; results]);
+}
+
+#[test]
+fn slices_of_the_right_length_are_taken() {
+    call(3, 2, 1, 2, 1);
+    call(8, 8, 8, 4, 1);
+}
+
+macro_rules! refused {
+    ($($name:ident: $($length:literal)*;)*) => {
+        $(#[test]
+        #[should_panic(expected = "a place for")]
+        fn $name() {
+            call($($length),*);
+        })*
+    };
+}
+
+refused! {
+    too_few_that_are_fixed: 2 2 1 2 1;
+    too_few_states: 3 1 1 2 1;
+    too_few_that_are_read: 3 2 0 2 1;
+    too_few_switches: 3 2 1 1 1;
+    too_few_results: 3 2 1 2 0;
+    too_many_results: 3 2 1 2 2;
+}
+
+#[test]
+#[should_panic(expected = "values are taken after they are there")]
+fn a_value_before_it_is_there_is_refused() {
+    let operations = vec![Operation::Negate(Operand::Value(0))];
+    let _ = Function::of(&Program { operations, results: Vec::new() });
+}
+
+#[test]
+fn functions_may_be_shared_and_dropped() {
+    let function = sum();
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                let mut results = [0.0];
+                function.call(
+                    Inputs { fixed: &[1.0; 3], states: &[2.0; 2], read: &[3.0], negative: &[true; 2] },
+                    &mut results,
+                );
+                assert_eq!(results, [5.0]);
+            });
+        }
+    });
+    (0..200).for_each(|_| drop(sum()));
+}
+
+#[test]
+fn the_longest_program_is_translated_and_no_longer_one() {
+    let program = |length: usize| {
+        let value = |of: usize| Operand::Value(u32::try_from(of).expect("few values"));
+        let operand = |of: usize| if of == 0 { Operand::State(0) } else { value(of - 1) };
+        let operations = (0..length).map(|of| Operation::Add(operand(of), Operand::Fixed(0))).collect();
+        Program { operations, results: vec![value(length - 1)] }
+    };
+    let function = Function::of(&program(LONGEST)).expect("this machine has a back end");
+    let mut results = [0.0];
+    function.call(Inputs { fixed: &[0.5], states: &[1.0], read: &[], negative: &[] }, &mut results);
+    assert_eq!(results, [1.0 + 0.5 * LONGEST as f64]);
+    assert!(Function::of(&program(LONGEST + 1)).is_none());
+}
