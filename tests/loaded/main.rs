@@ -156,8 +156,7 @@ fn same_at(compiled: &dyn Machine, loaded: &dyn Machine, t: f64, x: &[f64], comp
     both("damping", &|of| {
         compared.filled(of.damping_sparsity().len(n), |entries| of.damping(t, x, &negative, entries))
     });
-    let width = |of: &dyn Machine| of.series().map(|size| size.width);
-    assert_eq!(width(compiled), width(loaded), "{name}");
+    assert_eq!(compiled.series().is_some(), loaded.series().is_some(), "{name}");
     // Coefficients of high orders differ from those of rustc's code in the last places: it is open why.
     if compared == Compared::Exactly {
         both("series", &|of| bits(&expanded(of, t, x, &negative)));
