@@ -38,11 +38,11 @@ pub(crate) use crate::model::scalar::double::first_not_finite;
 pub use any::AnyMethod;
 pub use auto::{Auto, Change, Reason};
 pub use choice::{Integrator, UnknownIntegrator};
-#[cfg(feature = "std")]
-pub(crate) use explicit::both;
 pub use explicit::{
     BogackiShampine, Bs5, CalvoFrancoMontijanoRandez, Cfmr7, Dop853, DormandPrince, Explicit, Row, Tableau,
 };
+#[cfg(feature = "std")]
+pub(crate) use explicit::{Transposed, both};
 pub use flow::Flow;
 pub use gauss::Gauss6;
 #[cfg(feature = "std")]

@@ -14,6 +14,8 @@ mod lanes;
 #[cfg(test)]
 mod order;
 mod stages;
+#[cfg(feature = "std")]
+mod transposed;
 #[cfg(test)]
 mod vectors;
 
@@ -34,6 +36,8 @@ use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
 pub(super) use lanes::ExplicitInLanes;
 pub(super) use stages::{Complete, Stages};
+#[cfg(feature = "std")]
+pub(crate) use transposed::Transposed;
 
 /// The method of order 5(4) of Bogacki and Shampine: eight rates a step, one more if its dense output of order 5 is
 /// asked for.
@@ -124,6 +128,12 @@ impl<T: Tableau> Default for Explicit<T> {
 }
 
 impl<T: Tableau> Explicit<T> {
+    /// The state of a stage of the step of size `h` (s) that was tried last.
+    #[cfg(feature = "std")]
+    pub(crate) fn stage(&mut self, stage: usize, h: f64) -> &[f64] {
+        self.stages.state(stage, h)
+    }
+
     /// What is left of the end of a step less h times a difference after the projection, in parts of what is allowed.
     fn left(
         &mut self,
