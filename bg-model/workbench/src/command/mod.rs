@@ -183,7 +183,6 @@ fn command(program: &Program) -> clap::Command {
     let texts = &program.texts;
     let command = Cli::command().name(texts.name.clone()).bin_name(texts.name.clone()).version(texts.version.clone());
     let command = every(command.about(texts.about.clone()).after_help(help.clone()), program, &texts.name);
-    let command = command.mut_subcommand("gradient", |gradient| gradient.hide(!program.models.maker().has_gradients()));
     let command = command.mut_subcommand("report", |report| report.after_help(help.clone()));
     command.mut_subcommand("run", |run| run.after_help(help))
 }

@@ -130,6 +130,7 @@ impl<T: Tableau> Default for Explicit<T> {
 impl<T: Tableau> Explicit<T> {
     /// The state of a stage of the step of size `h` (s) that was tried last.
     #[cfg(feature = "std")]
+    #[inline(always)]
     pub(crate) fn stage(&mut self, stage: usize, h: f64) -> &[f64] {
         self.stages.state(stage, h)
     }

@@ -113,6 +113,7 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
 
     /// The state of a stage of the last step, of size `h`.
     #[cfg(feature = "std")]
+    #[inline(always)]
     pub fn state(&mut self, stage: usize, h: S) -> &[S] {
         if stage == 0 {
             return &self.start;

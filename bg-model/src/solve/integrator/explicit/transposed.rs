@@ -26,6 +26,7 @@ impl<T: Tableau> Transposed<T> {
     }
 
     /// Begins at the end of a step of size `h` (s), on whose state the number depends by `by_end`.
+    #[inline(always)]
     pub fn begin(&mut self, h: f64, by_end: &[f64]) {
         let Self { by_rates, room, .. } = self;
         room.copy_from_slice(by_end);
@@ -39,6 +40,7 @@ impl<T: Tableau> Transposed<T> {
     }
 
     /// How it depends on the rate of a stage.
+    #[inline(always)]
     pub fn by_rate(&mut self, stage: usize) -> &[f64] {
         for (first, rows) in self.by_rates.groups() {
             self.room.set_group(*first, rows[stage]);
@@ -47,14 +49,17 @@ impl<T: Tableau> Transposed<T> {
     }
 
     /// Hands on to the rates that the state of a stage is made of how the number depends on it.
+    #[inline(always)]
     pub fn hand_on(&mut self, stage: usize, h: f64, by_state: &[f64]) {
         let Self { by_rates, room, .. } = self;
         room.copy_from_slice(by_state);
         for (first, rows) in by_rates.groups_mut() {
             let by_state = room.group(*first);
-            for &(earlier, a) in T::A[stage] {
-                let part = h * a;
-                rows[earlier].iter_mut().zip(by_state).for_each(|(by_rate, by)| *by_rate += part * by);
+            for (earlier, a) in T::A[stage] {
+                let (row, part) = (&mut rows[*earlier], h * a);
+                for i in 0..SIDE_BY_SIDE {
+                    row[i] += part * by_state[i];
+                }
             }
         }
     }

@@ -9,10 +9,12 @@
 //!
 //! As forward slopes do, it divides a step into equal parts where DOP853 is far too inexact: of a run by DOP853 never.
 
+use pulp::NullaryFnOnce;
+
 use super::lifted::{Lifted, weighted};
 use crate::model::dynamics::{Machine, Swept};
 use crate::model::scalar::{Gradient, Scalar};
-use crate::solve::integrator::{Dop853, DormandPrince, Flow, Method, PointRef, Scale, Tableau, Transposed};
+use crate::solve::integrator::{Arch, Dop853, DormandPrince, Flow, Method, PointRef, Scale, Tableau, Transposed};
 use crate::solve::statistics::Statistics;
 
 /// Parts of a step at most.
@@ -51,6 +53,7 @@ pub(super) struct Back<'a> {
     pub lifted: Lifted,
     scale: Scale,
     method: Dop853,
+    arch: Arch,
     transposed: Transposed<DormandPrince>,
     /// The start of each part of the last step.
     starts: Vec<Vec<f64>>,
@@ -84,6 +87,7 @@ impl<'a> Back<'a> {
             lifted,
             scale,
             method,
+            arch: Arch::new(),
             transposed: Transposed::new(states),
             starts: Vec::new(),
             parts: 1,
@@ -135,7 +139,8 @@ impl<'a> Back<'a> {
                 let mut x = self.starts[number as usize].clone();
                 self.forwards(step.negative, part, &mut x);
             }
-            self.backwards(step.negative, part, is_whole, weights);
+            let arch = self.arch;
+            arch.dispatch(Backwards { back: self, negative: step.negative, part, is_whole, weights });
         }
         self.parts = (self.parts / 2).max(1);
         weights.iter().all(|weight| weight.is_finite())
@@ -169,6 +174,7 @@ impl<'a> Back<'a> {
 
     /// Replaces the weights of the state at the end of one part, whose stages are known, by those of the state at its
     /// start.
+    #[inline(always)]
     fn backwards(&mut self, negative: &[bool], Part { t, h }: Part, is_whole: bool, by_end: &mut [f64]) {
         self.transposed.begin(h, by_end);
         for stage in (0..DormandPrince::END).rev() {
@@ -201,4 +207,23 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Adds one to the other.
 pub(super) fn add(to: &mut [f64], other: &[f64]) {
     to.iter_mut().zip(other).for_each(|(to, other)| *to += other);
+}
+
+/// A part to be followed backwards, compiled for vectors.
+struct Backwards<'b, 'a> {
+    back: &'b mut Back<'a>,
+    negative: &'b [bool],
+    part: Part,
+    is_whole: bool,
+    weights: &'b mut [f64],
+}
+
+impl NullaryFnOnce for Backwards<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self { back, negative, part, is_whole, weights } = self;
+        back.backwards(negative, part, is_whole, weights);
+    }
 }
