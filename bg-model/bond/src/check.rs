@@ -28,7 +28,7 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
                         if count == 1 { graph.name.clone() } else { format!("{} with {count} models", graph.name) }
                     })
                     .collect();
-                say(&format!("{}: {}\n", text.name, names.join(", ")), &mut code);
+                say(&format!("{}: {}\n", text.path.display(), names.join(", ")), &mut code);
             }
             Err(faults) => {
                 code = code.max(1);

@@ -111,6 +111,74 @@ fn faults_are_told_at_their_places() {
     assert_eq!((json.status.code(), line["line"].as_u64()), (Some(1), Some(12)));
 }
 
+/// A motor's torque on a shaft that stands in a file of its own.
+const DRIVEN: &str = "
+use \"parts/shaft.bond\";
+graph Driven {
+    part shaft: Shaft { inertia = 4; }
+    Se drive = 2; 1 axle: rotation; drive -> axle -> shaft.end;
+    observe { shaft.speed }
+}";
+const SHAFT: &str = "use \"wheel.bond\";
+part Shaft {
+    param inertia: kg*m^2 = 1;
+    port end: rotation;
+    part wheel: Wheel { inertia = inertia; }
+    end -> wheel.rim;
+    observe { speed: rad/s = wheel.disc.flow }
+}
+graph Alone { part shaft: Shaft; Se brake = -1; 1 axle: rotation; brake -> axle -> shaft.end; observe { shaft.speed } }";
+const WHEEL: &str =
+    "part Wheel {\n    param inertia: kg*m^2 = 1;\n    port rim: rotation; I disc = inertia; rim -> disc;\n}";
+
+/// A folder with them.
+fn driven() -> TempDir {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("parts")).expect("a folder");
+    write(&folder, "driven.bond", DRIVEN);
+    write(&folder, "parts/shaft.bond", SHAFT);
+    write(&folder, "parts/wheel.bond", WHEEL);
+    folder
+}
+
+#[test]
+fn a_file_uses_parts_of_others() {
+    let folder = driven();
+    assert_eq!(
+        told(folder.path(), "check driven.bond parts/shaft.bond"),
+        "driven.bond: Driven\nparts/shaft.bond: Alone\n"
+    );
+    told(folder.path(), "run driven.bond --t-end 1 --step 1 --csv out.csv --no-figures");
+    let csv = std::fs::read_to_string(folder.path().join("out.csv")).expect("a CSV file");
+    let speed: f64 = csv.lines().last().and_then(|row| row.split(',').nth(1)?.parse().ok()).expect("a number");
+    // dw/dt = 2 N*m / 4 kg*m^2.
+    assert!((speed - 0.5).abs() < 1e-12, "{csv}");
+}
+
+#[test]
+fn faults_of_a_used_file_are_told_at_their_places_in_it() {
+    let folder = driven();
+    write(&folder, "parts/wheel.bond", &WHEEL.replace("-> disc", "-> disk"));
+    let place = if cfg!(windows) { "parts\\wheel.bond" } else { "parts/wheel.bond" };
+    for (line, code) in [("check driven.bond", 1), ("run driven.bond", 2)] {
+        let fault = refused(folder.path(), line, code);
+        assert!(fault.contains("wheel.bond:3:50") && fault.contains("did you mean `shaft.wheel.disc`?"), "{fault}");
+    }
+    let json = bond(folder.path(), "check driven.bond --json");
+    let line: serde_json::Value = serde_json::from_slice(&json.stdout).expect("a line of JSON");
+    assert_eq!(
+        (line["file"].as_str(), line["line"].as_u64(), line["column"].as_u64()),
+        (Some(place), Some(3), Some(50))
+    );
+    // Files that use each other, and one that is not there.
+    write(&folder, "parts/wheel.bond", &format!("{WHEEL}\nuse \"../driven.bond\";"));
+    let fault = refused(folder.path(), "check driven.bond", 1);
+    assert!(fault.contains("error[BG0902]") && fault.contains("wheel.bond:5:5"), "{fault}");
+    write(&folder, "parts/shaft.bond", &SHAFT.replace("wheel.bond", "whel.bond"));
+    let fault = refused(folder.path(), "check driven.bond", 1);
+    assert!(fault.contains("shaft.bond:1:5") && fault.contains("cannot read parts"), "{fault}");
+}
+
 #[test]
 fn of_several_graphs_one_is_named() {
     let folder = folder();

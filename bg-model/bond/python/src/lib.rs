@@ -19,7 +19,7 @@ pyo3::create_exception!(
     _bond_graph,
     FaultError,
     PyValueError,
-    "Faults of a text; `faults` has each as a dict: line, column, code, message, help."
+    "Faults of a text; `faults` has each as a dict: file, line, column, code, message, help."
 );
 
 /// The model of a file: a text with graphs, a Rust file with calls of `bond_graph!`, a robot in URDF or MJCF.
@@ -33,11 +33,11 @@ fn load(py: Python<'_>, path: PathBuf, graph: Option<&str>) -> PyResult<Model> {
     model(py, text, graph)
 }
 
-/// The model of a text.
+/// The model of a text. Files that it uses are sought in `folder`.
 #[pyfunction]
-#[pyo3(signature = (text, *, graph=None))]
-fn compile(py: Python<'_>, text: String, graph: Option<&str>) -> PyResult<Model> {
-    let text = Text { name: "<text>".to_owned(), text };
+#[pyo3(signature = (text, *, graph=None, folder=PathBuf::new()))]
+fn compile(py: Python<'_>, text: String, graph: Option<&str>, folder: PathBuf) -> PyResult<Model> {
+    let text = Text { path: folder.join("<text>"), text };
     if text.is_deep() {
         return Err(PyValueError::new_err("brackets in brackets, deeper than any mechanism has them"));
     }
@@ -55,8 +55,10 @@ fn fault_error(py: Python<'_>, text: &Text, all: &[Fault]) -> PyResult<PyErr> {
     let told: Vec<String> = all.iter().map(|fault| faults::plain(text, fault)).collect();
     let raised = FaultError::new_err(format!("\n{}", told.join("\n\n")));
     let listed = PyList::empty(py);
-    for Fault { code, message, help, place: [line, column], .. } in all {
+    for fault in all {
+        let Fault { code, message, help, place: [line, column], .. } = fault;
         let one = PyDict::new(py);
+        one.set_item("file", faults::place(text, fault).0.display().to_string())?;
         one.set_item("line", line)?;
         one.set_item("column", column)?;
         one.set_item("code", code)?;

@@ -7,6 +7,7 @@ use crate::fault::Explain;
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum PartFault {
     UnknownPart { name: String, near: Option<String> },
+    OfRust { name: String },
     UnknownParameter { part: String, name: String, near: Option<String> },
     GivenInside { part: String, name: String },
     ContainsItself { circle: Vec<String> },
@@ -31,7 +32,7 @@ use PartFault as F;
 impl Explain for PartFault {
     fn code(&self) -> &'static str {
         match self {
-            F::UnknownPart { .. } => "BG0801",
+            F::UnknownPart { .. } | F::OfRust { .. } => "BG0801",
             F::UnknownParameter { .. } | F::GivenInside { .. } => "BG0802",
             F::ContainsItself { .. } => "BG0803",
             F::PortWithoutBond { .. } => "BG0804",
@@ -50,6 +51,7 @@ impl Explain for PartFault {
     fn message(&self) -> String {
         match self {
             F::UnknownPart { name, .. } => format!("there is no part `{name}`"),
+            F::OfRust { name } => format!("the part `{name}` stands in no file here"),
             F::UnknownParameter { part, name, .. } => format!("part `{part}` has no parameter or input `{name}`"),
             F::GivenInside { part, name } => format!("part `{part}` gives `{name}` a value itself"),
             F::ContainsItself { circle } => format!("part `{}` contains itself: {}", circle[0], circle.join(" -> ")),
@@ -82,6 +84,7 @@ impl Explain for PartFault {
             | F::NothingToStart { near: Some(near), .. }
             | F::NothingToWatch { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownPart { name, .. } if name.contains("::") => "write the path of a `pub part`".to_owned(),
+            F::OfRust { .. } => "write the part into a file: a text cannot use parts of a Rust crate".to_owned(),
             F::UnknownPart { name, .. } => {
                 format!("declare `part {name} {{ ... }}`, or write the path of a part of elsewhere, `self::{name}`")
             }

@@ -21,7 +21,7 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use crate::fault::{Fault, Faults, Staged, near_miss};
+use crate::fault::{DeclaredTwice, Fault, Faults, Staged, near_miss};
 use crate::source::ast::{Graph, Item, Part, PartPath, Source, Use, used_parts};
 use flat::{Flat, Placed};
 use level::Level;
@@ -72,7 +72,11 @@ pub fn flatten_leniently(source: &Source) -> (Flattened, Faults) {
         flattened.source.graphs.push(Graph { items, ..graph.clone() });
         flattened.uses.extend(uses);
     }
-    for part in &source.parts {
+    for (place, part) in source.parts.iter().enumerate() {
+        if let Some(first) = source.parts[..place].iter().find(|known| known.name.text == part.name.text) {
+            let twice = DeclaredTwice::new(&part.name.text, part.name.span, first.name.span);
+            stage.faults.push(Fault::new(part.name.span, &twice));
+        }
         if stage.parts.contains_key(&call.key_of(part)) {
             continue;
         }
@@ -90,6 +94,12 @@ pub fn unasked(source: &Source) -> Option<&PartPath> {
     let lists = source.parts.iter().map(|part| &part.items).chain(source.graphs.iter().map(|graph| &graph.items));
     let is_unasked = |path: &&PartPath| source.foreign.iter().all(|known| known.path.text != path.name.text);
     lists.flat_map(|items| used_parts(items)).filter(|path| path.is_foreign()).find(is_unasked)
+}
+
+/// The fault of such a path where no macro can be asked.
+#[must_use]
+pub fn of_rust(path: &PartPath) -> Fault {
+    Fault::new(path.name.span, &PartFault::OfRust { name: path.name.text.clone() })
 }
 
 /// Where the name of a part means something: the call, or what another call has answered.

@@ -11,7 +11,7 @@ class FaultError(ValueError):
     """Faults of a text, each shown at its place."""
 
     faults: list[dict[str, Any]]
-    """Each a dict: line, column, code, message, help."""
+    """Each a dict: file, line, column, code, message, help."""
 
 class RunFailed(ValueError):
     """A run that stopped before its end."""
@@ -128,5 +128,5 @@ class Model:
 def load(path: str | PathLike[str], *, graph: str | None = None) -> Model:
     """The model of a file: a text with graphs, a Rust file with calls of ``bond_graph!``, a robot in URDF or MJCF."""
 
-def compile(text: str, *, graph: str | None = None) -> Model:
-    """The model of a text."""
+def compile(text: str, *, graph: str | None = None, folder: str | PathLike[str] = "") -> Model:
+    """The model of a text. Files that it uses are sought in ``folder``, the working folder unless said."""
