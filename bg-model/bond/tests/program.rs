@@ -1,7 +1,8 @@
 //! The program as a user calls it: in a folder of its own, by its name, on files.
 
+use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
 
@@ -177,6 +178,35 @@ fn faults_of_a_used_file_are_told_at_their_places_in_it() {
     write(&folder, "parts/shaft.bond", &SHAFT.replace("wheel.bond", "whel.bond"));
     let fault = refused(folder.path(), "check driven.bond", 1);
     assert!(fault.contains("shaft.bond:1:5") && fault.contains("cannot read parts"), "{fault}");
+}
+
+#[test]
+fn texts_are_brought_into_one_form() {
+    let folder = folder();
+    let (wild, tame) = ("graph A { // why\nSe f=1 ; 1 j:translation;f->j ;}", "graph A { // why\n    Se f = 1;\n");
+    write(&folder, "wild.bond", wild);
+    write(&folder, "faulty.bond", "graph A { wheel w; }");
+    let output = bond(folder.path(), "fmt --check wild.bond");
+    assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(1), b"wild.bond has another form\n".as_slice()));
+    assert_eq!(std::fs::read_to_string(folder.path().join("wild.bond")).expect("a file"), wild);
+    // What can be formatted is, whatever else is asked for.
+    let fault = refused(folder.path(), "fmt faulty.bond wild.bond missing.bond", 2);
+    assert!(fault.contains("faulty.bond:1:11") && fault.contains("cannot read missing.bond"), "{fault}");
+    assert_eq!(std::fs::read_to_string(folder.path().join("faulty.bond")).expect("a file"), "graph A { wheel w; }");
+    assert!(std::fs::read_to_string(folder.path().join("wild.bond")).expect("a file").starts_with(tame));
+    told(folder.path(), "fmt --check wild.bond");
+    write(&folder, "wild.rs", "fn main() {}");
+    assert!(refused(folder.path(), "fmt wild.rs", 2).contains("no text of the language"));
+}
+
+#[test]
+fn a_text_goes_through_a_pipe() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_bond"));
+    let command = command.args(["fmt", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    child.stdin.take().expect("a pipe").write_all(b"graph A {1 j;}").expect("it reads");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "graph A {\n    1 j;\n}\n");
 }
 
 #[test]
