@@ -10,6 +10,8 @@ use bg_compiler::fault::near_miss;
 use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
 
+use crate::watch::Served;
+
 /// What is asked for.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Asked {
@@ -37,6 +39,16 @@ pub enum Own {
         /// Changes nothing and names the files that have another form; exit code 1 where there are any
         #[arg(long)]
         check: bool,
+    },
+    /// Keeps the report of a file open in the browser, and makes it anew whenever the file is saved
+    Watch {
+        #[command(flatten)]
+        served: Served,
+        /// The file
+        file: PathBuf,
+        /// Options of `report`
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        options: Vec<OsString>,
     },
     /// Writes a first mechanism
     New {
@@ -83,13 +95,28 @@ FILE is a text with graphs (`.bond`), a Rust file with calls of `bond_graph!` (`
 
 Exit code: 0 done, 1 the run or an output failed, 2 the input cannot be used.";
 
+impl Own {
+    /// With its own options that stand among those of the workbench.
+    fn complete(mut self) -> Result<Self, Error> {
+        if let Self::Watch { served, options, .. } = &mut self {
+            if let Some(port) = taken(options, "--port").map_err(unusable)? {
+                served.port = port.parse().map_err(|_| unusable(format!("--port {port}: not the number of a port")))?;
+            }
+            let before = options.len();
+            options.retain(|word| word != "--no-open");
+            served.no_open |= options.len() < before;
+        }
+        Ok(self)
+    }
+}
+
 /// What these words ask for, the program's name first.
 ///
 /// # Errors
 /// What is missing or wrong; or the help or version that is asked for.
 pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Error> {
     let matches = command().try_get_matches_from(words)?;
-    let own = || Own::from_arg_matches(&matches).map(Asked::Own);
+    let own = || Own::from_arg_matches(&matches).and_then(Own::complete).map(Asked::Own);
     match matches.subcommand() {
         Some(("golden", inside)) => match inside.subcommand() {
             Some((name, inside)) => call(&["golden", name], words_of(inside)),
@@ -138,10 +165,14 @@ fn unknown(name: &str) -> Error {
     Error::raw(ErrorKind::InvalidSubcommand, format!("there is no command `{name}`{near}\n"))
 }
 
+fn unusable(fault: String) -> Error {
+    Error::raw(ErrorKind::InvalidValue, fault + "\n")
+}
+
 fn call(command: &[&str], mut words: impl Iterator<Item = OsString>) -> Result<Asked, Error> {
     let file = words.next().expect("a file is required").into();
     let mut options = words.collect();
-    let graph = taken(&mut options, "--graph").map_err(|fault| Error::raw(ErrorKind::InvalidValue, fault + "\n"))?;
+    let graph = taken(&mut options, "--graph").map_err(unusable)?;
     let command = command.iter().map(|&word| word.to_owned()).collect();
     Ok(Asked::Program(Call { file, graph, command, options }))
 }
@@ -204,6 +235,10 @@ mod tests {
         assert_eq!(of("graph a.bond --graph=B"), call("a.bond", Some("B"), &["graph"], &[]));
         let files = vec!["a".into(), "b".into()];
         assert_eq!(of("check a b --json"), Ok(Asked::Own(Own::Check { files, json: true })));
+        for line in ["watch --port 80 --no-open a.bond --set b=1", "watch a.bond --set b=1 --no-open --port 80"] {
+            let (served, options) = (Served { port: 80, no_open: true }, vec!["--set".into(), "b=1".into()]);
+            assert_eq!(of(line), Ok(Asked::Own(Own::Watch { served, file: "a.bond".into(), options })));
+        }
         assert_eq!(of("fmt -"), Ok(Asked::Own(Own::Fmt { files: vec!["-".into()], check: false })));
     }
 
@@ -218,6 +253,7 @@ mod tests {
             ("check --jason a", "unexpected argument '--jason'"),
             ("run --t-end 2 a.bond", "unexpected argument '--t-end'"),
             ("run a.bond --graph", "--graph: give it a value"),
+            ("watch a.bond --set b=1 --port 1e9", "--port 1e9: not the number of a port"),
             ("run --help", "Usage: bond run FILE [OPTIONS]"),
             ("", "Usage: bond"),
             ("--version", "bond 0"),

@@ -3,10 +3,12 @@
 //! In: a path. Out: its text, where it is one, in the language of `bond_graph!`; of a robot the text that `bg-import`
 //! makes. The graphs of the text and of the files that it uses, or their faults.
 
+use std::cell::RefCell;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use bg_compiler::source::syntax::files::gather;
 use bg_import::{Format, Options, import_file};
 use bg_loaded::{Counted, Fault, Graph, Opened, Wanted, load_file};
 use bg_workbench::files::console;
@@ -154,6 +156,28 @@ fn imported(format: Format, path: &Path) -> Result<String, FileFault> {
     let imported = import_file(format, path, options).map_err(fault)?;
     imported.notes.iter().for_each(console::note);
     Ok(imported.text)
+}
+
+/// The files that a text is made of: the one at `path`, those that it uses, and those that it would use if they were there.
+///
+/// # Panics
+/// The machine has no memory for a thread.
+#[must_use]
+pub fn files(path: &Path) -> Vec<PathBuf> {
+    let path = path.to_owned();
+    // With its thread ends what the compiler remembers of a text.
+    let reader = std::thread::spawn(move || {
+        let found = RefCell::new(vec![path.clone()]);
+        let open = |path: &Path| {
+            found.borrow_mut().push(path.to_owned());
+            open(path)
+        };
+        if let Ok(Text { path, text }) = read(&path) {
+            drop(gather(&path, Opened { file: itself(&path), text }, &open));
+        }
+        found.into_inner()
+    });
+    reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
 /// The graphs of a text; where a command asks for one scene only, called `scene` on the command line or not said, only what

@@ -7,6 +7,7 @@ mod arguments;
 mod check;
 mod fmt;
 mod new;
+mod watch;
 
 use std::fmt::Display;
 use std::process::ExitCode;
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
     match arguments::asked(std::env::args_os()) {
         Ok(Asked::Own(Own::Check { files, json })) => check::check(&files, json),
         Ok(Asked::Own(Own::Fmt { files, check })) => fmt::fmt(&files, check),
+        Ok(Asked::Own(Own::Watch { served, file, options })) => watch::watch(&file, &options, &served),
         Ok(Asked::Own(Own::New { name })) => new::new(&name).map_or_else(refused, |()| ExitCode::SUCCESS),
         Ok(Asked::Program(call)) => program(call),
         Err(fault) if fault.use_stderr() => refused(console::in_one_line(&fault.render().to_string())),

@@ -1,8 +1,10 @@
 //! The program as a user calls it: in a folder of its own, by its name, on files.
 
-use std::io::Write;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
 
 use tempfile::TempDir;
 
@@ -278,4 +280,89 @@ fn derivatives_are_found_without_rustc() {
     // x = 0.1 cos(w t), w = (k / m)^(1/2), dw/dm = -w / (2 m).
     let expected = 0.1 * 5.0_f64.sin() * 5.0 / 4.0;
     assert!((last[1] - expected).abs() < 1e-8, "{csv}");
+}
+
+/// `bond watch` on a file of a folder; it is ended where this is dropped.
+struct Watch {
+    child: Child,
+    /// `127.0.0.1:PORT`
+    address: String,
+    number: u64,
+}
+
+impl Watch {
+    fn of(folder: &Path, line: &str) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bond"));
+        command.current_dir(folder).arg("watch").args(line.split_whitespace()).args(["--no-open", "--t-end", "0.1"]);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the program starts");
+        let mut told = String::new();
+        BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut told).expect("a line");
+        let address = told.strip_prefix("http://").and_then(|rest| rest.split('/').next()).expect("an address");
+        Self { address: address.to_owned(), child, number: u64::MAX }
+    }
+
+    fn get(&self, path: &str) -> String {
+        let mut stream = TcpStream::connect(&self.address).expect("a server");
+        stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a time");
+        write!(stream, "GET {path} HTTP/1.0\r\n\r\n").expect("it reads");
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).expect("an answer");
+        answer.split_once("\r\n\r\n").expect("a head and a body").1.to_owned()
+    }
+
+    /// The next state in which nothing is being made.
+    fn next(&mut self) -> serde_json::Value {
+        loop {
+            let state = self.get(&format!("/state?after={}", self.number));
+            let state: serde_json::Value = serde_json::from_str(&state).expect("JSON");
+            let number = state["number"].as_u64().expect("a number");
+            let is_other = std::mem::replace(&mut self.number, number) != number;
+            if is_other && number > 0 && state["is_making"] == false {
+                return state;
+            }
+        }
+    }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        self.child.kill().and_then(|()| self.child.wait()).expect("it ran");
+    }
+}
+
+#[test]
+fn a_report_is_replaced_when_a_file_is_saved() {
+    let folder = driven();
+    let mut watch = Watch::of(folder.path(), "driven.bond");
+    let first = watch.next();
+    assert_eq!((first["report"].as_u64(), first["fault"].as_str()), (Some(1), None), "{first}");
+    assert!(watch.get("/report").contains("shaft.speed") && watch.get("/").contains("iframe"));
+    // A fault in a used file, which an editor replaces: the last report stays.
+    write(&folder, "new.bond", &WHEEL.replace("-> disc", "-> disk"));
+    std::fs::rename(folder.path().join("new.bond"), folder.path().join("parts/wheel.bond")).expect("a rename");
+    let faulty = watch.next();
+    let fault = faulty["fault"].as_str().expect("a fault");
+    assert!(faulty["report"] == 1 && fault.contains("wheel.bond:3:50") && fault.contains("help: "), "{faulty}");
+    assert!(watch.get("/report").contains("shaft.speed"));
+    // Fixed, and another name of the output.
+    write(&folder, "parts/wheel.bond", WHEEL);
+    assert_eq!(watch.next()["report"], 2);
+    write(&folder, "driven.bond", &DRIVEN.replace("observe { shaft.speed }", "observe { turns: rad/s = shaft.speed }"));
+    assert_eq!(watch.next()["report"], 3);
+    assert!(watch.get("/report").contains("turns"));
+    // A run that is refused is told like a fault.
+    drop(watch);
+    let mut watch = Watch::of(folder.path(), "driven.bond --set nothing=1");
+    let refused = watch.next();
+    assert!(refused["fault"].as_str().is_some_and(|fault| fault.contains("nothing")), "{refused}");
+}
+
+#[test]
+fn what_cannot_be_watched_is_said_at_once() {
+    let folder = folder();
+    assert!(refused(folder.path(), "watch missing.bond --no-open", 2).contains("cannot read missing.bond"));
+    write(&folder, "swing.bond", SWING);
+    let watch = Watch::of(folder.path(), "swing.bond");
+    let port = watch.address.rsplit(':').next().expect("a port");
+    assert!(refused(folder.path(), &format!("watch --port {port} swing.bond --no-open"), 2).contains("--port"));
 }
