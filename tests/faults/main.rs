@@ -297,7 +297,7 @@ const SCENES: [(&str, &str); 12] = [
 ];
 
 /// Parts and graphs that use them.
-const PARTS: [(&str, &str); 14] = [
+const PARTS: [(&str, &str); 15] = [
     ("BG0801", "graph G { part a: ▸Lag; }\npart Leg { let a = 1; }"),
     ("BG0802", "graph G { part a: Leg { ▸k = 1; } }\npart Leg { param j: 1 = 2; let a = j; }"),
     ("BG0803", "graph G { part a: Leg; }\npart Leg { part b: ▸Leg; }"),
@@ -316,6 +316,10 @@ const PARTS: [(&str, &str); 14] = [
     ("BG0812", "graph G { start ▸rod at [0, 0, 0]; }"),
     ("BG0813", "graph G { body rod { sphere radius 1; density 1; } start rod at [0, 0, 0]; start ▸rod at [0, 0, 1]; }"),
     ("BG0814", "graph G { observe { all of ▸a } }"),
+    (
+        "BG0815",
+        "graph ▸G { for i in 0..9000 { for j in 0..9000 { let a[i][j] = 1; } } part b: Leg { c = 1; } }\npart Leg { let a = 1; }",
+    ),
 ];
 
 /// More of parts.

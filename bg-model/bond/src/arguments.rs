@@ -30,6 +30,9 @@ pub enum Own {
         /// Each fault as a line of JSON
         #[arg(long)]
         json: bool,
+        /// The most statements of a graph, with its repetitions and parts written out [default: 20000]
+        #[arg(long = "limit-statements", value_name = "NUMBER")]
+        most: Option<usize>,
     },
     /// Brings texts into one form: lines, indentation, blanks; what they say stays, and their comments
     Fmt {
@@ -63,6 +66,8 @@ pub struct Call {
     pub file: PathBuf,
     /// Which graph of the file; the only one unless it is said.
     pub graph: Option<String>,
+    /// The most statements of a graph, where that is said.
+    pub most: Option<usize>,
     /// The words of the command.
     pub command: Vec<String>,
     pub options: Vec<OsString>,
@@ -87,11 +92,18 @@ const COMMANDS: [(&str, &str); 12] = [
 const GOLDEN: [(&str, &str); 2] =
     [("record", "Runs and records"), ("check", "Runs again what is recorded and says what differs")];
 
-const AFTER: &str = "`bond FILE [OPTIONS]` is `bond run FILE [OPTIONS]`; `bond COMMAND FILE --help` has the options of a command, with the names in
-the file.
+/// A file and its options, for clap.
+const WORDS: &str = "words";
+
+/// The option for larger graphs.
+const LIMIT: &str = "--limit-statements";
+
+const AFTER: &str = "`bond FILE [OPTIONS]` is `bond run FILE [OPTIONS]`. `bond COMMAND FILE --help` has the options of a command, with the
+names in the file.
 
 FILE is a text with graphs (`.bond`), a Rust file with calls of `bond_graph!` (`.rs`), a robot (`.urdf`, or `.xml` and
-`.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which.
+`.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which. A graph has at most 20000 statements, with
+its repetitions and parts written out; `--limit-statements NUMBER` allows others.
 
 Exit code: 0 done, 1 the run or an output failed, 2 the input cannot be used.";
 
@@ -99,7 +111,7 @@ impl Own {
     /// With its own options that stand among those of the workbench.
     fn complete(mut self) -> Result<Self, Error> {
         if let Self::Watch { served, options, .. } = &mut self {
-            if let Some(port) = taken(options, "--port").map_err(unusable)? {
+            if let Some(port) = taken(options, "--port")? {
                 served.port = port.parse().map_err(|_| unusable(format!("--port {port}: not the number of a port")))?;
             }
             let before = options.len();
@@ -119,15 +131,16 @@ pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Error> 
     let own = || Own::from_arg_matches(&matches).and_then(Own::complete).map(Asked::Own);
     match matches.subcommand() {
         Some(("golden", inside)) => match inside.subcommand() {
-            Some((name, inside)) => call(&["golden", name], words_of(inside)),
+            Some((name, inside)) => call(&["golden", name], words_of(inside, WORDS)),
             None => own(),
         },
-        Some((name, inside)) if COMMANDS.iter().any(|(known, _)| *known == name) => call(&[name], words_of(inside)),
+        Some((name, inside)) if COMMANDS.iter().any(|(known, _)| *known == name) => {
+            call(&[name], words_of(inside, WORDS))
+        }
         // A file alone is run.
-        Some((file, inside)) if file.contains('.') => call(
-            &["run"],
-            [file.into()].into_iter().chain(inside.get_many::<OsString>("").into_iter().flatten().cloned()),
-        ),
+        Some((file, inside)) if file.contains('.') => {
+            call(&["run"], [file.into()].into_iter().chain(words_of(inside, "")))
+        }
         Some((name, _)) if command().find_subcommand(name).is_none() => Err(unknown(name)),
         _ => own(),
     }
@@ -149,13 +162,13 @@ fn command() -> Command {
 
 /// A command on a file. All words after the file are the workbench's.
 fn of_workbench((name, does): (&'static str, &'static str)) -> Command {
-    let words = Arg::new("words").value_name("FILE").num_args(1..).trailing_var_arg(true).required(true);
+    let words = Arg::new(WORDS).value_name("FILE").num_args(1..).trailing_var_arg(true).required(true);
     let words = words.value_parser(value_parser!(OsString)).help("The file; its options come after it");
     Command::new(name).about(does).arg(words).override_usage(format!("bond {name} FILE [OPTIONS]"))
 }
 
-fn words_of(matches: &ArgMatches) -> impl Iterator<Item = OsString> {
-    matches.get_many::<OsString>("words").into_iter().flatten().cloned()
+fn words_of(matches: &ArgMatches, id: &str) -> impl Iterator<Item = OsString> {
+    matches.get_many::<OsString>(id).into_iter().flatten().cloned()
 }
 
 fn unknown(name: &str) -> Error {
@@ -172,9 +185,13 @@ fn unusable(fault: String) -> Error {
 fn call(command: &[&str], mut words: impl Iterator<Item = OsString>) -> Result<Asked, Error> {
     let file = words.next().expect("a file is required").into();
     let mut options = words.collect();
-    let graph = taken(&mut options, "--graph").map_err(unusable)?;
+    let graph = taken(&mut options, "--graph")?;
+    let most = match taken(&mut options, LIMIT)? {
+        Some(most) => Some(most.parse().map_err(|_| unusable(format!("{LIMIT} {most}: not a number of statements")))?),
+        None => None,
+    };
     let command = command.iter().map(|&word| word.to_owned()).collect();
-    Ok(Asked::Program(Call { file, graph, command, options }))
+    Ok(Asked::Program(Call { file, graph, most, command, options }))
 }
 
 /// The commands that ask for one scene.
@@ -190,7 +207,7 @@ pub fn only_scene(command: &[String], options: &[OsString]) -> Option<String> {
 }
 
 /// The value of an option, which is taken out of the words.
-fn taken(words: &mut Vec<OsString>, option: &str) -> Result<Option<String>, String> {
+fn taken(words: &mut Vec<OsString>, option: &str) -> Result<Option<String>, Error> {
     let with_value = format!("{option}=");
     let Some(place) = words.iter().position(|word| word == option || word.to_string_lossy().starts_with(&with_value))
     else {
@@ -201,7 +218,7 @@ fn taken(words: &mut Vec<OsString>, option: &str) -> Result<Option<String>, Stri
         return Ok(Some(value.to_owned()));
     }
     if place == words.len() {
-        return Err(format!("{option}: give it a value"));
+        return Err(unusable(format!("{option}: give it a value")));
     }
     Ok(Some(words.remove(place).to_string_lossy().into_owned()))
 }
@@ -219,6 +236,7 @@ mod tests {
         Ok(Asked::Program(Call {
             file: file.into(),
             graph: graph.map(str::to_owned),
+            most: None,
             command: command.iter().map(|&word| word.to_owned()).collect(),
             options: options.iter().map(Into::into).collect(),
         }))
@@ -234,7 +252,7 @@ mod tests {
         assert_eq!(of("graph a.bond --graph B -v"), call("a.bond", Some("B"), &["graph"], &["-v"]));
         assert_eq!(of("graph a.bond --graph=B"), call("a.bond", Some("B"), &["graph"], &[]));
         let files = vec!["a".into(), "b".into()];
-        assert_eq!(of("check a b --json"), Ok(Asked::Own(Own::Check { files, json: true })));
+        assert_eq!(of("check a b --json"), Ok(Asked::Own(Own::Check { files, json: true, most: None })));
         for line in ["watch --port 80 --no-open a.bond --set b=1", "watch a.bond --set b=1 --no-open --port 80"] {
             let (served, options) = (Served { port: 80, no_open: true }, vec!["--set".into(), "b=1".into()]);
             assert_eq!(of(line), Ok(Asked::Own(Own::Watch { served, file: "a.bond".into(), options })));
@@ -252,6 +270,7 @@ mod tests {
             ("reprot a.bond", "there is no command `reprot`; did you mean `report`?"),
             ("check --jason a", "unexpected argument '--jason'"),
             ("run --t-end 2 a.bond", "unexpected argument '--t-end'"),
+            ("run a.bond --limit-statements many", "--limit-statements many: not a number of statements"),
             ("run a.bond --graph", "--graph: give it a value"),
             ("watch a.bond --set b=1 --port 1e9", "--port 1e9: not the number of a port"),
             ("run --help", "Usage: bond run FILE [OPTIONS]"),

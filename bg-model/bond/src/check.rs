@@ -7,7 +7,8 @@ use bg_workbench::files::console;
 use bond_graph::{faults, file};
 
 /// Says the faults of all files; exit code 1 where there are any, 2 where a file cannot be read.
-pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
+pub fn check(files: &[PathBuf], json: bool, most: Option<usize>) -> ExitCode {
+    let wanted = file::Wanted { most, ..file::Wanted::default() };
     let mut code = 0;
     for path in files {
         let text = match file::read(path) {
@@ -18,7 +19,7 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
                 continue;
             }
         };
-        match file::graphs(&text, None) {
+        match file::graphs(&text, &wanted) {
             Ok(graphs) if json => drop(graphs),
             Ok(graphs) => {
                 let names: Vec<String> = graphs

@@ -83,7 +83,7 @@ mod tests {
     #[test]
     fn a_fault_is_shown_at_its_place() {
         let text = Text { path: "swing.bond".into(), text: "graph Swing {\n    param mass: kgg = 2;\n}\n".to_owned() };
-        let faults = crate::file::graphs(&text, None).expect_err("there is no unit kgg");
+        let faults = crate::file::graphs(&text, &crate::file::Wanted::default()).expect_err("there is no unit kgg");
         let told = plain(&text, &faults[0]);
         assert!(told.starts_with("error[BG0"), "{told}");
         assert!(told.contains("--> swing.bond:2:17") && told.contains("^^^") && told.contains("help: "), "{told}");

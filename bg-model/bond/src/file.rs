@@ -4,13 +4,14 @@
 //! makes. The graphs of the text and of the files that it uses, or their faults.
 
 use std::cell::RefCell;
-use std::fs::File;
+use std::fs::{File, metadata};
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use bg_compiler::source::syntax::files::gather;
 use bg_import::{Format, Options, import_file};
-use bg_loaded::{Counted, Fault, Graph, Opened, Wanted, load_file};
+use bg_loaded::{Counted, Fault, Graph, Opened, load_file};
 use bg_workbench::files::console;
 use bg_workbench::scenes::in_small_letters;
 use thiserror::Error;
@@ -19,6 +20,9 @@ use thiserror::Error;
 const LARGEST: u64 = 8 << 20;
 /// Brackets in brackets: a text has some ten.
 const DEEPEST: usize = 200;
+/// How often a file is read that changes meanwhile, and the pause before it is read again.
+const ATTEMPTS: usize = 5;
+const PAUSE: Duration = Duration::from_millis(20);
 /// The stack of the compiler, bytes: laws may be long.
 const STACK: usize = 1 << 28;
 
@@ -39,6 +43,9 @@ pub enum FileFault {
     /// It is no text.
     #[error("{}: no text in UTF-8", .0.display())]
     NoText(PathBuf),
+    /// It is written all the time.
+    #[error("{}: changes while it is read; wait until it is written", .0.display())]
+    Changing(PathBuf),
     /// It is Rust, or a robot.
     #[error("{}: no text of the language alone; give a file such as saw.bond", .0.display())]
     Other(PathBuf),
@@ -124,9 +131,34 @@ impl Text {
     }
 }
 
+/// The text of a file as it is at one time.
 fn plain(path: &Path) -> Result<Text, FileFault> {
     let unreadable = |source| FileFault::Unreadable { path: path.to_owned(), source };
-    text_of(File::open(path).map_err(unreadable)?, path)
+    // A pipe has been written meanwhile, and is read once.
+    let state = || {
+        let metadata = metadata(path).map_err(unreadable)?;
+        Ok(metadata.is_file().then(|| (metadata.len(), metadata.modified().ok())))
+    };
+    let read = || text_of(File::open(path).map_err(unreadable)?, path);
+    at_one_time(state, read)?.ok_or_else(|| FileFault::Changing(path.to_owned()))
+}
+
+/// What is read while the state stays; none where it does not, in several attempts.
+fn at_one_time<S: PartialEq, T, E>(
+    state: impl Fn() -> Result<S, E>,
+    mut read: impl FnMut() -> Result<T, E>,
+) -> Result<Option<T>, E> {
+    let mut before = state()?;
+    for _ in 0..ATTEMPTS {
+        let found = read();
+        let after = state()?;
+        if before == after {
+            return found.map(Some);
+        }
+        before = after;
+        std::thread::sleep(PAUSE);
+    }
+    Ok(None)
 }
 
 /// The text that a reader gives, called `path`.
@@ -180,21 +212,59 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
     reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
-/// The graphs of a text; where a command asks for one scene only, called `scene` on the command line or not said, only what
-/// runs it.
+/// What is wanted of a text.
+#[derive(Clone, Debug, Default)]
+pub struct Wanted {
+    /// Where one scene alone is wanted beside the one that stands for the graph, its name on the command line; only what
+    /// runs it is made.
+    pub scene: Option<String>,
+    /// The most statements of a graph with its repetitions and parts written out; none: 20000.
+    pub most: Option<usize>,
+}
+
+/// The graphs of a text.
 ///
 /// # Errors
 /// All faults of the first stage that has any, each with the file that it is in.
 ///
 /// # Panics
 /// The machine has no memory for a thread.
-pub fn graphs(text: &Text, scene: Option<&str>) -> Result<Vec<Graph>, Vec<Fault>> {
+pub fn graphs(text: &Text, wanted: &Wanted) -> Result<Vec<Graph>, Vec<Fault>> {
+    let (Text { path, text }, Wanted { scene, most }) = (text.clone(), wanted.clone());
     let counted = if scene.is_some() { Counted::Made } else { Counted::All };
-    let (Text { path, text }, scene) = (text.clone(), scene.map(str::to_owned));
     let is_wanted = move |name: &str| scene.as_ref().is_none_or(|scene| in_small_letters(name) == *scene);
     let compiler = std::thread::Builder::new().stack_size(STACK).spawn(move || {
         let first = Opened { file: itself(&path), text };
-        load_file(&path, first, &open, Wanted { scene: &is_wanted, counted })
+        load_file(&path, first, &open, bg_loaded::Wanted { scene: &is_wanted, counted, most })
     });
     compiler.expect("a thread can be started").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    #[test]
+    fn what_changes_while_it_is_read_is_read_again() {
+        let (version, reads) = (Cell::new(0), Cell::new(0));
+        let at = |last: u32| {
+            reads.set(0);
+            // A writer is done after `last` steps, one during each read.
+            let read = || {
+                reads.set(reads.get() + 1);
+                let found = version.get();
+                version.set(last.min(found + 1));
+                Ok::<u32, ()>(found)
+            };
+            version.set(0);
+            at_one_time(|| Ok(version.get()), read)
+        };
+        assert_eq!((at(0), reads.get()), (Ok(Some(0)), 1));
+        assert_eq!((at(2), reads.get()), (Ok(Some(2)), 3));
+        assert_eq!((at(u32::MAX), reads.get()), (Ok(None), ATTEMPTS));
+        let failed = at_one_time(|| Ok(0), || Err::<(), &str>("gone"));
+        assert_eq!(failed, Err("gone"));
+    }
 }

@@ -19,7 +19,7 @@ use bond_graph::{faults, file, maker};
 
 fn main() -> ExitCode {
     match arguments::asked(std::env::args_os()) {
-        Ok(Asked::Own(Own::Check { files, json })) => check::check(&files, json),
+        Ok(Asked::Own(Own::Check { files, json, most })) => check::check(&files, json, most),
         Ok(Asked::Own(Own::Fmt { files, check })) => fmt::fmt(&files, check),
         Ok(Asked::Own(Own::Watch { served, file, options })) => watch::watch(&file, &options, &served),
         Ok(Asked::Own(Own::New { name })) => new::new(&name).map_or_else(refused, |()| ExitCode::SUCCESS),
@@ -37,12 +37,13 @@ fn refused(fault: impl Display) -> ExitCode {
 }
 
 /// Hands a command of the workbench to the program of a graph.
-fn program(Call { file, graph, command, options }: Call) -> ExitCode {
+fn program(Call { file, graph, most, command, options }: Call) -> ExitCode {
     let read = match file::read(&file) {
         Ok(read) => read,
         Err(fault) => return refused(fault),
     };
-    let graphs = match file::graphs(&read, arguments::only_scene(&command, &options).as_deref()) {
+    let wanted = file::Wanted { scene: arguments::only_scene(&command, &options), most };
+    let graphs = match file::graphs(&read, &wanted) {
         Ok(graphs) => graphs,
         Err(faults) => {
             faults::tell(&read, &faults);

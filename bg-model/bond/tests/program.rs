@@ -244,6 +244,49 @@ fn what_is_no_text_is_one_clear_error() {
 }
 
 #[test]
+fn what_would_not_end_is_one_clear_error() {
+    let folder = folder();
+    let many = "graph G { for i in 0..10000 { for j in 0..10000 { let a[i][j] = 1; } } }";
+    write(&folder, "many.bond", many);
+    let elements =
+        "for i in 0..9999 { C a[i] = k; 0 b[i]: electrical; } for i in 1..9999 { b[i - 1] -> b[i] -> a[i]; }";
+    write(
+        &folder,
+        "large.bond",
+        &format!("graph G {{ param k: F = 1; {elements} {} }}", elements.replace("[i", "[9999 + i")),
+    );
+    for name in ["many", "large"] {
+        let fault = refused(folder.path(), &format!("check {name}.bond"), 1);
+        assert!(
+            fault.contains("error[BG0815]: graph `G` has more than 20000 statements")
+                && fault.contains("--limit-statements")
+        );
+    }
+    write(&folder, "swing.bond", SWING);
+    let fault = refused(folder.path(), "run swing.bond --limit-statements 5", 2);
+    assert!(fault.contains("more than 5 statements"), "{fault}");
+    told(folder.path(), "run swing.bond --limit-statements 50 --t-end 0.1");
+    told(folder.path(), "check swing.bond --limit-statements 50");
+    // Files in files.
+    for k in 0..100 {
+        write(&folder, &format!("{k}.bond"), &format!("use \"{}.bond\"; part P{k} {{ let a = 1; }}", k + 1));
+    }
+    assert!(refused(folder.path(), "check 0.bond", 1).contains("error[BG0903]"));
+    // Numbers that are none.
+    write(&folder, "values.toml", "mass = nan\n");
+    for (line, said) in [
+        ("--set mass=nan", "it must be a finite number"),
+        ("--params values.toml", "it must be a finite number"),
+        ("--input push=nan", "must be a finite number"),
+        ("--t-end nan", "must be a finite number"),
+        ("--t-end 1e300", "choose a longer one"),
+    ] {
+        let fault = refused(folder.path(), &format!("run swing.bond {line}"), 2);
+        assert!(fault.contains(said), "{line}: {fault}");
+    }
+}
+
+#[test]
 fn a_robot_and_a_rust_file_are_run() {
     let folder = folder();
     write(

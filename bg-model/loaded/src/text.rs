@@ -10,6 +10,7 @@ use std::sync::Arc;
 
 use bg_compiler::fault::Staged;
 use bg_compiler::pipeline;
+use bg_compiler::source::ast::Source;
 use bg_compiler::source::syntax::files::{self, Gathered, Open, Opened};
 use bg_compiler::source::{part, syntax};
 pub use bg_compiler::tables::Counted;
@@ -82,7 +83,7 @@ impl fmt::Display for Fault {
 pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
     let first = Opened { file: PathBuf::new(), text: text.to_owned() };
     let open: Open<'_> = &|path| Err(format!("cannot read {}: a text alone uses no files", path.display()));
-    load_file(Path::new(""), first, open, Wanted { scene: &|_| true, counted: Counted::All })
+    load_file(Path::new(""), first, open, Wanted { scene: &|_| true, counted: Counted::All, most: None })
 }
 
 /// What is wanted of a text.
@@ -92,6 +93,8 @@ pub struct Wanted<'a> {
     pub scene: &'a dyn Fn(&str) -> bool,
     /// Of which programs descriptions tell the operations. To run a model not all of them have to be made.
     pub counted: Counted,
+    /// The most statements of a graph with its repetitions and parts written out; none: 20000.
+    pub most: Option<usize>,
 }
 
 /// The same of the file at `path`, with the files that it uses, each opened by `open`; what is not wanted is left out.
@@ -136,7 +139,7 @@ fn graphs(gathered: &Gathered, wanted: Wanted<'_>) -> Staged<Vec<Graph>> {
         return Err(gathered.faults.clone());
     }
     let tokens = gathered.tokens.clone();
-    let source = syntax::parse(calls(&tokens).unwrap_or(tokens))?;
+    let source = Source { most: wanted.most, ..syntax::parse(calls(&tokens).unwrap_or(tokens))? };
     if let Some(path) = part::unasked(&source) {
         return Err(vec![part::of_rust(path)]);
     }

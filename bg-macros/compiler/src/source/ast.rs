@@ -25,7 +25,12 @@ pub struct Source {
     pub graphs: Vec<Graph>,
     /// Names that end with a dot: faults of syntax, whose statements are not there.
     pub unfinished: Vec<Name>,
+    /// The most statements of a graph with its repetitions and parts written out; none: [`MOST_STATEMENTS`].
+    pub most: Option<usize>,
 }
+
+/// What a graph has at most, unless its source says otherwise: ten times what has been compiled in a minute.
+pub const MOST_STATEMENTS: usize = 20_000;
 
 /// One `graph NAME { ... }`.
 #[derive(Clone, Debug)]

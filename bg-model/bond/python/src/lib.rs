@@ -9,7 +9,7 @@ use bg_loaded::Fault;
 use bg_python::model::{Model, RunFailed};
 use bg_python::table::Table;
 use bg_workbench::Program;
-use bond_graph::file::{self, Text};
+use bond_graph::file::{self, Text, Wanted};
 use bond_graph::{faults, maker};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -24,28 +24,35 @@ pyo3::create_exception!(
 
 /// The model of a file: a text with graphs, a Rust file with calls of `bond_graph!`, a robot in URDF or MJCF.
 #[pyfunction]
-#[pyo3(signature = (path, *, graph=None))]
-fn load(py: Python<'_>, path: PathBuf, graph: Option<&str>) -> PyResult<Model> {
+#[pyo3(signature = (path, *, graph=None, limit_statements=None))]
+fn load(py: Python<'_>, path: PathBuf, graph: Option<&str>, limit_statements: Option<usize>) -> PyResult<Model> {
     let text = py.detach(|| file::read(&path)).map_err(|fault| match fault {
         file::FileFault::Unreadable { .. } => PyOSError::new_err(fault.to_string()),
         fault => PyValueError::new_err(fault.to_string()),
     })?;
-    model(py, text, graph)
+    model(py, &text, graph, limit_statements)
 }
 
 /// The model of a text. Files that it uses are sought in `folder`.
 #[pyfunction]
-#[pyo3(signature = (text, *, graph=None, folder=PathBuf::new()))]
-fn compile(py: Python<'_>, text: String, graph: Option<&str>, folder: PathBuf) -> PyResult<Model> {
+#[pyo3(signature = (text, *, graph=None, folder=PathBuf::new(), limit_statements=None))]
+fn compile(
+    py: Python<'_>,
+    text: String,
+    graph: Option<&str>,
+    folder: PathBuf,
+    limit_statements: Option<usize>,
+) -> PyResult<Model> {
     let text = Text { path: folder.join("<text>"), text };
     if text.is_deep() {
         return Err(PyValueError::new_err("brackets in brackets, deeper than any mechanism has them"));
     }
-    model(py, text, graph)
+    model(py, &text, graph, limit_statements)
 }
 
-fn model(py: Python<'_>, text: Text, graph: Option<&str>) -> PyResult<Model> {
-    let graphs = py.detach(|| file::graphs(&text, None)).or_else(|faults| Err(fault_error(py, &text, &faults)?))?;
+fn model(py: Python<'_>, text: &Text, graph: Option<&str>, most: Option<usize>) -> PyResult<Model> {
+    let wanted = Wanted { most, ..Wanted::default() };
+    let graphs = py.detach(|| file::graphs(text, &wanted)).or_else(|faults| Err(fault_error(py, text, &faults)?))?;
     let loaded = maker::Loaded::of(graphs, graph).map_err(PyValueError::new_err)?;
     Ok(Model::new(move || Program::with(loaded.clone())))
 }

@@ -25,6 +25,7 @@ pub enum PartFault {
     StartTwice { body: String, clause: &'static str },
     NothingToWatch { name: String, near: Option<String> },
     WatchesNothing { part: String },
+    Large { of: String, most: usize },
 }
 
 use PartFault as F;
@@ -45,6 +46,7 @@ impl Explain for PartFault {
             F::NothingToStart { .. } => "BG0812",
             F::StartTwice { .. } => "BG0813",
             F::NothingToWatch { .. } | F::WatchesNothing { .. } => "BG0814",
+            F::Large { .. } => "BG0815",
         }
     }
 
@@ -74,6 +76,9 @@ impl Explain for PartFault {
             F::StartTwice { body, clause } => format!("`start {clause}` of `{body}` is given twice"),
             F::NothingToWatch { name, .. } => format!("nothing is called `{name}`"),
             F::WatchesNothing { part } => format!("part `{part}` has no `observe`, so that there is nothing to watch"),
+            F::Large { of, most } => {
+                format!("{of} has more than {most} statements, with its repetitions and parts written out")
+            }
         }
     }
 
@@ -106,6 +111,7 @@ impl Explain for PartFault {
             F::NothingToStart { .. } => "write the path of a body, or of a point of it".to_owned(),
             F::StartTwice { .. } => "remove one of the two".to_owned(),
             F::NothingToWatch { .. } => "write the path of a part, body, joint or element".to_owned(),
+            F::Large { .. } => "make it smaller; `bond` has an option for more, `--limit-statements`".to_owned(),
             F::WatchesNothing { .. } => "name what to watch, or give the part an `observe { ... }`".to_owned(),
         }
     }

@@ -1,7 +1,7 @@
 //! Files that use parts of other files: `use "parts/shaft.bond";`.
 //!
-//! In: the text of a file, what opens others. Out: the tokens of one text: the parts of all files that it uses, each file
-//! once, then what stands in the file itself. No longer occurs: `use`.
+//! In: the text of a file, what opens others. Out: the tokens of one text: the parts of all files that it uses, each
+//! file once, then what stands in the file itself. No longer occurs: `use`.
 //!
 //! Graphs of a used file are left alone, and its parts are no items of Rust: these are what the file itself has.
 
