@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use bg_loaded::Graph;
 use bg_workbench::files::console;
 use bond_graph::{faults, file};
 
@@ -21,16 +22,7 @@ pub fn check(files: &[PathBuf], json: bool, most: Option<usize>) -> ExitCode {
         };
         match file::graphs(&text, &wanted) {
             Ok(graphs) if json => drop(graphs),
-            Ok(graphs) => {
-                let names: Vec<String> = graphs
-                    .iter()
-                    .map(|graph| {
-                        let count = graph.models.len();
-                        if count == 1 { graph.name.clone() } else { format!("{} with {count} models", graph.name) }
-                    })
-                    .collect();
-                say(&format!("{}: {}\n", text.path.display(), names.join(", ")), &mut code);
-            }
+            Ok(graphs) => say(&format!("{}: {}\n", text.path.display(), listed(&graphs)), &mut code),
             Err(faults) => {
                 code = code.max(1);
                 if json { say(&faults::json(&text, &faults), &mut code) } else { faults::tell(&text, &faults) }
@@ -38,6 +30,15 @@ pub fn check(files: &[PathBuf], json: bool, most: Option<usize>) -> ExitCode {
         }
     }
     ExitCode::from(code)
+}
+
+/// The graphs, each with the number of its models where it has several.
+fn listed(graphs: &[Graph]) -> String {
+    let one = |Graph { name, models, .. }: &Graph| match models.len() {
+        1 => name.clone(),
+        count => format!("{name} with {count} models"),
+    };
+    if graphs.is_empty() { "only parts".to_owned() } else { graphs.iter().map(one).collect::<Vec<_>>().join(", ") }
 }
 
 fn say(text: &str, code: &mut u8) {

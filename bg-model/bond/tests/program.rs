@@ -148,8 +148,8 @@ fn driven() -> TempDir {
 fn a_file_uses_parts_of_others() {
     let folder = driven();
     assert_eq!(
-        told(folder.path(), "check driven.bond parts/shaft.bond"),
-        "driven.bond: Driven\nparts/shaft.bond: Alone\n"
+        told(folder.path(), "check driven.bond parts/shaft.bond parts/wheel.bond"),
+        "driven.bond: Driven\nparts/shaft.bond: Alone\nparts/wheel.bond: only parts\n"
     );
     told(folder.path(), "run driven.bond --t-end 1 --step 1 --csv out.csv --no-figures");
     let csv = std::fs::read_to_string(folder.path().join("out.csv")).expect("a CSV file");
