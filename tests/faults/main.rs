@@ -83,7 +83,7 @@ const MECHANISM: [(&str, &str); 14] = [
     ("BG0214", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness ▸1e4; restitution 0.5; }"),
 ];
 
-const GRAPH: [(&str, &str); 36] = [
+const GRAPH: [(&str, &str); 37] = [
     ("BG0301", "param mass: ▸kgs = 1;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0302", "param m: kg = 1;\nSe f = 1; 1 j: translation; I ▸m = 2; f -> j -> m;"),
     ("BG0303", "param mass: kg = 1;\nSe f = 1; 1 j: translation; I m = ▸mas; f -> j -> m;"),
@@ -118,6 +118,7 @@ const GRAPH: [(&str, &str); 36] = [
     ("BG0330", "Se f = ▸guess(1); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0331", "MSe f = ▸integral(m.power); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0336", "MSe f = ▸unwrapped(m.p, m.p, 0); 1 j: translation; I m = 2; f -> j -> m;"),
+    ("BG0337", "Se f = 1; 1 j: translation; I m = ▸j; f -> j -> m;"),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
 ];
@@ -533,6 +534,12 @@ fn all_faults_of_a_stage_come_at_once() {
     check_all(
         "graph G {\nparam m: ▸kgs = 1;\nSe f = ▸force; 1 j: ▸linear; I ▸m = 1;\nf -> j -> ▸mass;\n}",
         &["BG0301", "BG0303", "BG0305", "BG0302", "BG0303"],
+    );
+    // What uses a name that is declared twice is no fault of its own.
+    check_all(
+        "graph G {\nparam push: N = 1;\nSe ▸push = 2; 1 j: translation; I m = 1; R r = push.flow;\n\
+         push -> j -> m; j -> r;\nobserve { push: N = push }\n}",
+        &["BG0302"],
     );
     // Shapes and units.
     check_all(
