@@ -11,6 +11,7 @@ use std::path::Path;
 use bg_compiler::fault::Faults;
 use bg_compiler::pipeline;
 use bg_compiler::source::syntax;
+use bg_compiler::source::syntax::files::{self, Gathered, Opened};
 use proc_macro2::{Span, TokenStream, TokenTree, fallback};
 use quote::{quote, quote_spanned};
 
@@ -35,53 +36,72 @@ pub fn named(tokens: &TokenStream) -> Option<Named> {
 
 /// The items of its graphs. The path begins at `root`, the folder of the crate.
 pub fn compile(Named { path, span }: &Named, root: &Path) -> TokenStream {
-    let full = root.join(path);
     let error = |text: &str| quote_spanned!(*span => ::core::compile_error!(#text););
-    let text = match std::fs::read_to_string(&full) {
-        Ok(text) => text,
-        Err(fault) => return error(&format!("cannot read `{path}`: {fault}\nhelp: the path begins beside Cargo.toml")),
+    let first = match open(root, Path::new(path)) {
+        Ok(first) => first,
+        Err(fault) => return error(&format!("{fault}\nhelp: the path begins beside Cargo.toml")),
     };
-    // With this rustc builds anew where the file changes.
-    let watched = full.display().to_string();
-    let mut items = quote!(
-        const _: &[::core::primitive::u8] = ::core::include_bytes!(#watched);
-    );
-    let Ok(tokens) = text.parse::<TokenStream>() else {
-        items.extend(error(&format!("{path}: a bracket or a quote is out of place\nhelp: close what is open")));
-        return items;
-    };
-    let (compiled, is_faulty) = bg_compiler::compile_items(tokens);
-    items.extend(compiled);
+    let gather = || files::gather(Path::new(path), first.clone(), &|path| open(root, path));
+    let gathered = gather();
+    // With these rustc builds anew where a file changes.
+    let watched = gathered.files.iter().map(|file| root.join(&file.path).display().to_string());
+    let mut items = quote!(#(const _: &[::core::primitive::u8] = ::core::include_bytes!(#watched);)*);
+    let mut is_faulty = !gathered.faults.is_empty();
+    if !is_faulty {
+        let (compiled, has_faults) = bg_compiler::compile_items(gathered.tokens);
+        items.extend(compiled);
+        is_faulty = has_faults;
+    }
     if is_faulty {
-        items.extend(faults(&text).iter().map(|fault| {
-            let place = fault.span.start();
-            error(&format!("{path}:{}:{}: {fault}", place.line, place.column + 1))
-        }));
+        items.extend(places(gather).iter().map(|fault| error(fault)));
     }
     items
 }
 
-/// The faults of a text with their places in it.
-fn faults(text: &str) -> Faults {
+fn open(root: &Path, path: &Path) -> Result<Opened, String> {
+    let full = root.join(path);
+    let text = std::fs::read_to_string(&full).map_err(|fault| format!("cannot read `{}`: {fault}", path.display()))?;
+    Ok(Opened { file: full.canonicalize().unwrap_or(full), text })
+}
+
+/// The faults of a text with their places in its files.
+fn places(gather: impl Fn() -> Gathered) -> Vec<String> {
     fallback::force();
-    let tokens = text.parse::<TokenStream>().unwrap_or_default();
-    let faults = syntax::parse(tokens).and_then(|source| pipeline::models(&source)).err().unwrap_or_default();
+    let gathered = gather();
+    let told = |fault| {
+        let fault = gathered.named(fault);
+        let (file, place) = (&gathered.files[gathered.place(fault.span)].path, fault.span.start());
+        format!("{}:{}:{}: {fault}", file.display(), place.line, place.column + 1)
+    };
+    let told = faults(&gathered).into_iter().map(told).collect();
     if proc_macro::is_available() {
         fallback::unforce();
     }
-    faults
+    told
+}
+
+fn faults(gathered: &Gathered) -> Faults {
+    if !gathered.faults.is_empty() {
+        return gathered.faults.clone();
+    }
+    let models = syntax::parse(gathered.tokens.clone()).and_then(|source| pipeline::models(&source));
+    models.err().unwrap_or_default()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn compiled(name: &str, text: &str) -> String {
-        let folder = std::env::temp_dir().join(format!("bond-graph-file-{}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder");
-        std::fs::write(folder.join(name), text).expect("a file");
+    /// The items of the first of these files, in a folder of their own.
+    fn compiled(files: &[(&str, &str)]) -> String {
+        let name = files[0].0;
+        let folder = std::env::temp_dir().join(format!("bond-graph-file-{}-{name}", std::process::id()));
+        std::fs::create_dir_all(folder.join("parts")).expect("a folder");
+        files.iter().for_each(|(name, text)| std::fs::write(folder.join(name), text).expect("a file"));
         let tokens = format!("file \"{name}\"").parse().expect("tokens");
-        compile(&named(&tokens).expect("a file is named"), &folder).to_string()
+        let items = compile(&named(&tokens).expect("a file is named"), &folder).to_string();
+        std::fs::remove_dir_all(folder).expect("it is there");
+        items
     }
 
     #[test]
@@ -89,15 +109,33 @@ mod tests {
         let graph = "graph Coil { 1 wire: electrical; I coil = 2; wire -> coil; }";
         let tokens: TokenStream = graph.parse().expect("tokens");
         let own = bg_compiler::compile(tokens.clone()).to_string();
-        assert!(named(&tokens).is_none() && compiled("coil.bond", graph).ends_with(&own));
+        assert!(named(&tokens).is_none() && compiled(&[("coil.bond", graph)]).ends_with(&own));
     }
 
     #[test]
     fn faults_say_line_and_column_in_the_file() {
-        let text = compiled("bad.bond", "graph Coil {\n    1 wire: electrical;\n    I coil = 2; wire -> coli;\n}");
+        let text = compiled(&[("bad.bond", "graph Coil {\n    1 wire: electrical;\n    I coil = 2; wire -> coli;\n}")]);
         assert!(text.contains("bad.bond:3:25: [BG0303] nothing is called `coli`"), "{text}");
+        let text = compiled(&[("open.bond", "graph Coil {\n    1 wire")]);
+        assert!(text.contains("open.bond:1:12: [BG0906]"), "{text}");
         let tokens = "file \"missing.bond\"".parse().expect("tokens");
         let text = compile(&named(&tokens).expect("a file"), Path::new("nowhere")).to_string();
         assert!(text.contains("cannot read `missing.bond`"), "{text}");
+    }
+
+    #[test]
+    fn a_file_uses_others() {
+        let graph = "graph Driven { part shaft: Shaft; Se f = 1; 1 j: rotation; f -> j -> shaft.end; }";
+        let driven = &format!("use \"parts/shaft.bond\"; {graph}");
+        let shaft = "pub part Shaft { port end: rotation; I wheel = 2; end -> wheel; }";
+        let items = compiled(&[("driven.bond", driven), ("parts/shaft.bond", shaft)]);
+        assert!(items.contains("struct Driven"), "{items}");
+        // Rust builds anew where either file changes; the part is no item of this call.
+        assert_eq!(items.matches("include_bytes").count(), 2, "{items}");
+        assert!(!items.contains("macro_rules"), "{items}");
+        let items = compiled(&[("faulty.bond", driven), ("parts/shaft.bond", &shaft.replace("= 2", "= two"))]);
+        assert!(items.contains("parts/shaft.bond:1:48: [BG0303]"), "{items}");
+        let items = compiled(&[("alone.bond", driven)]);
+        assert!(items.contains("alone.bond:1:5: [BG0901] cannot read `parts/shaft.bond`"), "{items}");
     }
 }

@@ -20,14 +20,9 @@ use crate::mechanism::Hacksaw;
 use crate::precision::case;
 use crate::{checks, sources, summary};
 
-/// What makes its models: all solutions are stored.
+/// What makes its models.
 pub(crate) fn maker() -> impl Maker {
-    let maker = Compiled::<Hacksaw>::new().without_solutions();
-    #[cfg(feature = "lanes")]
-    let maker = maker.lanes();
-    #[cfg(feature = "gradients")]
-    let maker = maker.gradients();
-    maker
+    Compiled::<Hacksaw>::new()
 }
 
 /// The program.

@@ -44,7 +44,8 @@ fn assembly(rod_length: f64) -> AssemblyError {
 
 fn guess(guess: f64) -> AssemblyError {
     static GAPS: [Gap; 1] = [Gap { joint: "pin", component: "x", unit: "m" }];
-    close(&[guess], &GAPS, &|q, r| r[0] = q[0] - 1.0, &|_, terms| terms.fill(1.0)).expect_err("the guess is refused")
+    close(&[guess], &GAPS, &|q, r| r[0] = q[0] - 1.0, &|_, extents| extents.fill(1.0))
+        .expect_err("the guess is refused")
 }
 
 #[test]

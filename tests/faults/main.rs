@@ -9,11 +9,12 @@ use std::path::Path;
 use bg_compiler::fault::{Fault, Staged};
 use bg_compiler::pipeline;
 use bg_compiler::source::syntax;
+use bg_compiler::source::syntax::files::{self, Gathered, Opened};
 
 const MARK: char = '▸';
 
 /// The statements of the graph, one line each; they begin in line 2.
-const SYNTAX: [(&str, &str); 22] = [
+const SYNTAX: [(&str, &str); 23] = [
     ("BG0101", "▸resitor R = 2;"),
     ("BG0102", "supply ▸=> shaft;"),
     ("BG0103", "I rotor = ▸inertia"),
@@ -36,6 +37,7 @@ const SYNTAX: [(&str, &str); 22] = [
     ("BG0120", "▸/// A coil.\nI L = coil;"),
     ("BG0121", "▸#[cfg(test)] I L = coil;"),
     ("BG0122", ""),
+    ("BG0123", "▸use \"shaft.bond\";"),
 ];
 
 /// More parentheses than the parser follows.
@@ -81,7 +83,7 @@ const MECHANISM: [(&str, &str); 14] = [
     ("BG0214", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness ▸1e4; restitution 0.5; }"),
 ];
 
-const GRAPH: [(&str, &str); 36] = [
+const GRAPH: [(&str, &str); 37] = [
     ("BG0301", "param mass: ▸kgs = 1;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0302", "param m: kg = 1;\nSe f = 1; 1 j: translation; I ▸m = 2; f -> j -> m;"),
     ("BG0303", "param mass: kg = 1;\nSe f = 1; 1 j: translation; I m = ▸mas; f -> j -> m;"),
@@ -116,6 +118,7 @@ const GRAPH: [(&str, &str); 36] = [
     ("BG0330", "Se f = ▸guess(1); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0331", "MSe f = ▸integral(m.power); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0336", "MSe f = ▸unwrapped(m.p, m.p, 0); 1 j: translation; I m = 2; f -> j -> m;"),
+    ("BG0337", "Se f = 1; 1 j: translation; I m = ▸j; f -> j -> m;"),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
 ];
@@ -295,7 +298,7 @@ const SCENES: [(&str, &str); 12] = [
 ];
 
 /// Parts and graphs that use them.
-const PARTS: [(&str, &str); 14] = [
+const PARTS: [(&str, &str); 15] = [
     ("BG0801", "graph G { part a: ▸Lag; }\npart Leg { let a = 1; }"),
     ("BG0802", "graph G { part a: Leg { ▸k = 1; } }\npart Leg { param j: 1 = 2; let a = j; }"),
     ("BG0803", "graph G { part a: Leg; }\npart Leg { part b: ▸Leg; }"),
@@ -314,6 +317,10 @@ const PARTS: [(&str, &str); 14] = [
     ("BG0812", "graph G { start ▸rod at [0, 0, 0]; }"),
     ("BG0813", "graph G { body rod { sphere radius 1; density 1; } start rod at [0, 0, 0]; start ▸rod at [0, 0, 1]; }"),
     ("BG0814", "graph G { observe { all of ▸a } }"),
+    (
+        "BG0815",
+        "graph ▸G { for i in 0..9000 { for j in 0..9000 { let a[i][j] = 1; } } part b: Leg { c = 1; } }\npart Leg { let a = 1; }",
+    ),
 ];
 
 /// More of parts.
@@ -344,6 +351,43 @@ const MORE_OF_PARTS: [(&str, &str); 10] = [
     ("BG0303", "part Leg { port hub: translation; I m = ▸mass; hub -> m; }"),
 ];
 
+/// Texts that use files.
+const FILES: [(&str, &str); 6] = [
+    ("BG0901", "use ▸\"shift.bond\"; graph G {}"),
+    ("BG0902", "use \"circle.bond\"; graph G {}"),
+    ("BG0903", "use \"0\"; graph G {}"),
+    ("BG0904", "use \"shaft.bond\"; use \"needs.bond\"; graph G {}"),
+    ("BG0905", "use ▸\"graph.bond\"; graph G {}"),
+    ("BG0906", "graph G ▸("),
+];
+
+/// The files that they use; one that is called as a number uses the next one.
+fn marked(path: &Path) -> Result<String, String> {
+    let name = path.to_str().unwrap_or_default();
+    let text = match name {
+        "circle.bond" => "use ▸\"circle.bond\";",
+        "shaft.bond" => "part Shaft { let a = 1; }",
+        "needs.bond" => "\n part Both { part one: ▸Shaft; }",
+        "graph.bond" => "graph G {}",
+        _ => "",
+    };
+    match name.parse::<u32>() {
+        Ok(number) => Ok(format!("use ▸\"{}\";", number + 1)),
+        Err(_) if text.is_empty() => Err(format!("cannot read `{name}`")),
+        Err(_) => Ok(text.to_owned()),
+    }
+}
+
+/// A text with the files that it uses.
+fn gathered(text: &str) -> Gathered {
+    let opened = |path: &Path, text: &str| Opened { file: path.to_owned(), text: text.replace(MARK, "") };
+    let open = |path: &Path| marked(path).map(|text| opened(path, &text));
+    files::gather(FIRST.as_ref(), opened(FIRST.as_ref(), text), &open)
+}
+
+/// The path of a text that uses files.
+const FIRST: &str = "first.bond";
+
 /// All stages that have faults.
 fn compiled(text: &str) -> Staged<()> {
     let source = syntax::parse(text.parse().unwrap_or_else(|error| panic!("{error}\n{text}")))?;
@@ -366,13 +410,17 @@ fn place(fault: &Fault) -> (usize, usize) {
 fn source(statements: &str) -> String {
     match statements {
         "" => MARK.to_string(),
-        _ if statements.starts_with("graph") || statements.starts_with("part") => statements.to_owned(),
+        _ if ["graph", "part", "▸use"].iter().any(|word| statements.starts_with(word)) => statements.to_owned(),
         DEEP => format!("graph G {{\nlet a = {}{MARK}(1){};\n}}", "(".repeat(100), ")".repeat(100)),
         _ => format!("graph G {{\n{statements}\n}}"),
     }
 }
 
 fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
+    of_one_text().chain(FILES)
+}
+
+fn of_one_text() -> impl Iterator<Item = (&'static str, &'static str)> {
     SYNTAX
         .into_iter()
         .chain(MECHANISM)
@@ -387,7 +435,7 @@ fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
 #[test]
 fn each_fault_has_its_code_and_its_place() {
     let mut wrong = String::new();
-    for (code, statements) in all().chain(MORE).chain(MORE_OF_PARTS) {
+    for (code, statements) in of_one_text().chain(MORE).chain(MORE_OF_PARTS) {
         let (text, expected) = unmarked(&source(statements));
         let faults = compiled(&text).err().unwrap_or_default();
         let found: Vec<_> = faults.iter().map(|fault| (fault.code, place(fault))).collect();
@@ -399,9 +447,20 @@ fn each_fault_has_its_code_and_its_place() {
 }
 
 #[test]
+fn each_fault_of_files_has_its_code_and_its_place_in_its_file() {
+    for (code, text) in FILES {
+        let gathered = gathered(text);
+        let [fault] = gathered.faults.as_slice() else { panic!("{text}: {:?}", gathered.faults) };
+        let file = &gathered.files[gathered.place(fault.span)].path;
+        let marked = if file == Path::new(FIRST) { text.to_owned() } else { marked(file).expect("it was there") };
+        assert_eq!((fault.code, place(fault)), (code, unmarked(&marked).1), "{text}");
+    }
+}
+
+#[test]
 fn the_catalogue_of_faults() {
     let mut catalogue = String::new();
-    for (code, statements) in all().chain(MORE).chain(MORE_OF_PARTS) {
+    for (code, statements) in of_one_text().chain(MORE).chain(MORE_OF_PARTS) {
         let (text, _) = unmarked(&source(statements));
         for fault in compiled(&text).err().unwrap_or_default() {
             let statements = if statements == DEEP { "let a = ((...((1))...));" } else { statements };
@@ -409,6 +468,9 @@ fn the_catalogue_of_faults() {
             assert_eq!(fault.code, code);
             assert!(!fault.message.is_empty() && !fault.help.is_empty(), "{fault}");
         }
+    }
+    for (_, text) in FILES {
+        gathered(text).faults.iter().for_each(|fault| _ = writeln!(catalogue, "{text}\n{fault}\n"));
     }
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path(".");
@@ -472,6 +534,12 @@ fn all_faults_of_a_stage_come_at_once() {
     check_all(
         "graph G {\nparam m: ▸kgs = 1;\nSe f = ▸force; 1 j: ▸linear; I ▸m = 1;\nf -> j -> ▸mass;\n}",
         &["BG0301", "BG0303", "BG0305", "BG0302", "BG0303"],
+    );
+    // What uses a name that is declared twice is no fault of its own.
+    check_all(
+        "graph G {\nparam push: N = 1;\nSe ▸push = 2; 1 j: translation; I m = 1; R r = push.flow;\n\
+         push -> j -> m; j -> r;\nobserve { push: N = push }\n}",
+        &["BG0302"],
     );
     // Shapes and units.
     check_all(

@@ -1,18 +1,63 @@
 //! What is asked for.
 //!
 //! In: the words of the command line. Out: a command of this program, or one of the workbench with the file that comes
-//! after it. The options are the workbench's: its own reader knows them, as it knows the names in the file.
+//! after it. The options of those are the workbench's: its own reader knows them, as it knows the names in the file.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use bg_compiler::fault::near_miss;
+use clap::error::ErrorKind;
+use clap::{Arg, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
+
+use crate::watch::Served;
+
 /// What is asked for.
 #[derive(Debug, PartialEq, Eq)]
 pub enum Asked {
-    Help(String),
-    Check { files: Vec<PathBuf>, json: bool },
-    New { name: String },
+    Own(Own),
     Program(Call),
+}
+
+/// A command of this program.
+#[derive(Debug, PartialEq, Eq, Subcommand)]
+pub enum Own {
+    /// Says all faults of files; exit code 1 where there are any
+    Check {
+        /// The files
+        #[arg(value_name = "FILE", required = true)]
+        files: Vec<PathBuf>,
+        /// Each fault as a line of JSON
+        #[arg(long)]
+        json: bool,
+        /// The most statements of a graph, with its repetitions and parts written out [default: 20000]
+        #[arg(long = "limit-statements", value_name = "NUMBER")]
+        most: Option<usize>,
+    },
+    /// Brings texts into one form: lines, indentation, blanks; what they say stays, and their comments
+    Fmt {
+        /// The files; `-` takes a text from the standard input to the standard output
+        #[arg(value_name = "FILE", required = true)]
+        files: Vec<PathBuf>,
+        /// Changes nothing and names the files that have another form; exit code 1 where there are any
+        #[arg(long)]
+        check: bool,
+    },
+    /// Keeps the report of a file open in the browser, and makes it anew whenever the file is saved
+    Watch {
+        #[command(flatten)]
+        served: Served,
+        /// The file
+        file: PathBuf,
+        /// Options of `report`
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        options: Vec<OsString>,
+    },
+    /// Writes a first mechanism
+    New {
+        /// What it is called: the file is NAME.bond
+        name: String,
+    },
 }
 
 /// A command of the workbench.
@@ -23,19 +68,20 @@ pub struct Call {
     pub graph: Option<String>,
     /// Whether models run in the interpreter alone, without machine code.
     pub is_interpreted: bool,
+    /// The most statements of a graph, where that is said.
+    pub most: Option<usize>,
     /// The words of the command.
     pub command: Vec<String>,
     pub options: Vec<OsString>,
 }
 
 /// The workbench's commands on a file, each with what it does.
-const COMMANDS: [(&str, &str); 13] = [
+const COMMANDS: [(&str, &str); 12] = [
     ("run", "Runs a model: a summary, and files with its outputs and figures"),
     ("report", "Runs it and writes one page: motion, charts, the graph"),
     ("graph", "Prints or draws the bond graph, its states, equations and operations"),
     ("linearize", "Linear model, modes and frequency responses"),
     ("sweep", "Many runs by a plan"),
-    ("golden", "`golden record`, `golden check`: runs as regression tests"),
     ("compare", "Two scenes or runs beside each other"),
     ("precision", "Error and work of the integrators"),
     ("sensitivity", "Derivatives of outputs by parameters"),
@@ -44,66 +90,113 @@ const COMMANDS: [(&str, &str); 13] = [
     ("parameters", "Lists the parameters"),
     ("fmu", "Packs a functional mock-up unit"),
 ];
+/// Those of its command `golden`.
+const GOLDEN: [(&str, &str); 2] =
+    [("record", "Runs and records"), ("check", "Runs again what is recorded and says what differs")];
 
-/// What these words ask for.
+/// A file and its options, for clap.
+const WORDS: &str = "words";
+
+/// The option for larger graphs.
+const LIMIT: &str = "--limit-statements";
+
+const AFTER: &str = "`bond FILE [OPTIONS]` is `bond run FILE [OPTIONS]`. `bond COMMAND FILE --help` has the options of a command, with the
+names in the file.
+
+FILE is a text with graphs (`.bond`), a Rust file with calls of `bond_graph!` (`.rs`), a robot (`.urdf`, or `.xml` and
+`.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which. A graph has at most 20000 statements, with
+its repetitions and parts written out; `--limit-statements NUMBER` allows others. Models run in machine code where that
+pays, with `--interpreted` without it: slower, and to the bit the same.
+
+Exit code: 0 done, 1 the run or an output failed, 2 the input cannot be used.";
+
+impl Own {
+    /// With its own options that stand among those of the workbench.
+    fn complete(mut self) -> Result<Self, Error> {
+        if let Self::Watch { served, options, .. } = &mut self {
+            if let Some(port) = taken(options, "--port")? {
+                served.port = port.parse().map_err(|_| unusable(format!("--port {port}: not the number of a port")))?;
+            }
+            let before = options.len();
+            options.retain(|word| word != "--no-open");
+            served.no_open |= options.len() < before;
+        }
+        Ok(self)
+    }
+}
+
+/// What these words ask for, the program's name first.
 ///
 /// # Errors
-/// A sentence about what is missing.
-pub fn asked(words: impl Iterator<Item = OsString>) -> Result<Asked, String> {
-    let mut words: Vec<OsString> = words.collect();
-    let is = |word: &OsString, of: &[&str]| of.iter().any(|of| word == of);
-    let Some(first) = words.first().cloned() else { return Ok(Asked::Help(help())) };
-    if is(&first, &["-h", "--help", "help"]) {
-        return Ok(Asked::Help(help()));
-    }
-    if is(&first, &["-V", "--version"]) {
-        return Ok(Asked::Help(format!("bond {}\n", env!("CARGO_PKG_VERSION"))));
-    }
-    let own = first.to_str().unwrap_or_default();
-    if own == "check" {
-        let is_json = |word: &OsString| word == "--json";
-        let (options, files): (Vec<_>, Vec<_>) =
-            words.drain(1..).partition(|word| word.as_encoded_bytes().starts_with(b"-"));
-        if options.iter().any(|word| is(word, &["-h", "--help"])) {
-            return Ok(Asked::Help("Usage: bond check FILE.. [--json]\n\nSays all faults of the files. Exit code: 0 none, 1 some, 2 a file cannot be read.\n".to_owned()));
+/// What is missing or wrong; or the help or version that is asked for.
+pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Error> {
+    let matches = command().try_get_matches_from(words)?;
+    let own = || Own::from_arg_matches(&matches).and_then(Own::complete).map(Asked::Own);
+    match matches.subcommand() {
+        Some(("golden", inside)) => match inside.subcommand() {
+            Some((name, inside)) => call(&["golden", name], words_of(inside, WORDS)),
+            None => own(),
+        },
+        Some((name, inside)) if COMMANDS.iter().any(|(known, _)| *known == name) => {
+            call(&[name], words_of(inside, WORDS))
         }
-        if let Some(other) = options.iter().find(|word| !is_json(word)) {
-            return Err(format!("check has no option {}; it has --json", other.display()));
-        }
-        if files.is_empty() {
-            return Err("check what? Give files: bond check saw.bond".to_owned());
-        }
-        return Ok(Asked::Check {
-            json: options.iter().any(is_json),
-            files: files.into_iter().map(Into::into).collect(),
-        });
-    }
-    if own == "new" {
-        return match words.get(1).and_then(|name| name.to_str()) {
-            Some(name) if !name.starts_with('-') => Ok(Asked::New { name: name.to_owned() }),
-            _ => Err("give the new file a name: bond new swing".to_owned()),
-        };
-    }
-    let command = match own {
-        "golden" => words.drain(..words.len().min(2)).map(|word| word.to_string_lossy().into_owned()).collect(),
-        _ if COMMANDS.iter().any(|(name, _)| *name == own) => vec![words.remove(0).to_string_lossy().into_owned()],
         // A file alone is run.
-        _ if first.to_string_lossy().contains('.') => vec!["run".to_owned()],
-        _ => return Err(format!("there is no command `{own}`; bond --help lists them")),
-    };
-    let told = command.join(" ");
-    if words.first().is_none_or(|word| word.as_encoded_bytes().starts_with(b"-")) {
-        let is_help = words.first().is_some_and(|word| is(word, &["-h", "--help"]));
-        if is_help {
-            return Ok(Asked::Help(help_of(&told)));
+        Some((file, inside)) if file.contains('.') => {
+            call(&["run"], [file.into()].into_iter().chain(words_of(inside, "")))
         }
-        return Err(format!("give a file behind the command: bond {told} saw.bond"));
+        Some((name, _)) if command().find_subcommand(name).is_none() => Err(unknown(name)),
+        _ => own(),
     }
-    let file = words.remove(0).into();
-    let graph = taken(&mut words, "--graph")?;
-    let all = words.len();
-    words.retain(|word| word != "--interpreted");
-    Ok(Asked::Program(Call { file, graph, is_interpreted: words.len() < all, command, options: words }))
+}
+
+fn command() -> Command {
+    let program = Command::new("bond").version(env!("CARGO_PKG_VERSION")).arg_required_else_help(true);
+    let program = program.disable_help_subcommand(true).allow_external_subcommands(true);
+    let program =
+        program.external_subcommand_value_parser(value_parser!(OsString)).subcommands(COMMANDS.map(of_workbench));
+    let golden = Command::new("golden").about("Runs as regression tests").subcommand_required(true);
+    let golden =
+        golden.disable_help_subcommand(true).subcommands(GOLDEN.map(|(name, does)| {
+            of_workbench((name, does)).override_usage(format!("bond golden {name} FILE [OPTIONS]"))
+        }));
+    let program = Own::augment_subcommands(program.subcommand(golden)).override_usage("bond COMMAND FILE [OPTIONS]");
+    program.about("Runs and studies mechanisms in text files, in the language of `bond_graph!`").after_help(AFTER)
+}
+
+/// A command on a file. All words after the file are the workbench's.
+fn of_workbench((name, does): (&'static str, &'static str)) -> Command {
+    let words = Arg::new(WORDS).value_name("FILE").num_args(1..).trailing_var_arg(true).required(true);
+    let words = words.value_parser(value_parser!(OsString)).help("The file; its options come after it");
+    Command::new(name).about(does).arg(words).override_usage(format!("bond {name} FILE [OPTIONS]"))
+}
+
+fn words_of(matches: &ArgMatches, id: &str) -> impl Iterator<Item = OsString> {
+    matches.get_many::<OsString>(id).into_iter().flatten().cloned()
+}
+
+fn unknown(name: &str) -> Error {
+    let program = command();
+    let near = near_miss(name, program.get_subcommands().map(Command::get_name));
+    let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    Error::raw(ErrorKind::InvalidSubcommand, format!("there is no command `{name}`{near}\n"))
+}
+
+fn unusable(fault: String) -> Error {
+    Error::raw(ErrorKind::InvalidValue, fault + "\n")
+}
+
+fn call(command: &[&str], mut words: impl Iterator<Item = OsString>) -> Result<Asked, Error> {
+    let file = words.next().expect("a file is required").into();
+    let mut options: Vec<OsString> = words.collect();
+    let graph = taken(&mut options, "--graph")?;
+    let most = match taken(&mut options, LIMIT)? {
+        Some(most) => Some(most.parse().map_err(|_| unusable(format!("{LIMIT} {most}: not a number of statements")))?),
+        None => None,
+    };
+    let all = options.len();
+    options.retain(|word| word != "--interpreted");
+    let command = command.iter().map(|&word| word.to_owned()).collect();
+    Ok(Asked::Program(Call { file, graph, is_interpreted: options.len() < all, most, command, options }))
 }
 
 /// The commands that ask for one scene.
@@ -119,7 +212,7 @@ pub fn only_scene(command: &[String], options: &[OsString]) -> Option<String> {
 }
 
 /// The value of an option, which is taken out of the words.
-fn taken(words: &mut Vec<OsString>, option: &str) -> Result<Option<String>, String> {
+fn taken(words: &mut Vec<OsString>, option: &str) -> Result<Option<String>, Error> {
     let with_value = format!("{option}=");
     let Some(place) = words.iter().position(|word| word == option || word.to_string_lossy().starts_with(&with_value))
     else {
@@ -130,31 +223,9 @@ fn taken(words: &mut Vec<OsString>, option: &str) -> Result<Option<String>, Stri
         return Ok(Some(value.to_owned()));
     }
     if place == words.len() {
-        return Err(format!("{option}: give the name of a graph"));
+        return Err(unusable(format!("{option}: give it a value")));
     }
     Ok(Some(words.remove(place).to_string_lossy().into_owned()))
-}
-
-fn help() -> String {
-    let commands: String = COMMANDS.iter().map(|(name, does)| format!("  {name:<12} {does}\n")).collect();
-    format!(
-        "Runs and studies mechanisms in text files: multibond graphs in the language of `bond_graph!`.\n\n\
-         Usage: bond COMMAND FILE [OPTIONS]\n       bond FILE [OPTIONS]          as `bond run FILE`\n\n\
-         Commands on a file; `bond COMMAND FILE --help` has their options:\n{commands}\n\
-         Others:\n  check        Says all faults of files: bond check FILE.. [--json]\n  \
-         new          Writes a first mechanism: bond new NAME\n\n\
-         FILE is a text with graphs (`.bond`), a Rust file with calls of `bond_graph!` (`.rs`), a robot (`.urdf`, or `.xml`\n\
-         and `.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which. Models run in machine code where\n\
-         that pays, with `--interpreted` without it: slower, and to the bit the same.\n\n\
-         Exit code: 0 done, 1 the run or an output failed, 2 the input cannot be used.\n"
-    )
-}
-
-fn help_of(command: &str) -> String {
-    let does = COMMANDS.iter().find(|(name, _)| command.starts_with(name)).map_or("", |(_, does)| does);
-    format!(
-        "{does}.\n\nUsage: bond {command} FILE [OPTIONS]\n\nThe options have the names in the file: bond {command} FILE --help\n"
-    )
 }
 
 #[cfg(test)]
@@ -162,7 +233,8 @@ mod tests {
     use super::*;
 
     fn of(line: &str) -> Result<Asked, String> {
-        asked(line.split_whitespace().map(Into::into))
+        let words = ["bond"].into_iter().chain(line.split_whitespace());
+        asked(words.map(Into::into)).map_err(|fault| fault.to_string())
     }
 
     fn call(file: &str, graph: Option<&str>, command: &[&str], options: &[&str]) -> Result<Asked, String> {
@@ -170,18 +242,28 @@ mod tests {
             file: file.into(),
             graph: graph.map(str::to_owned),
             is_interpreted: false,
+            most: None,
             command: command.iter().map(|&word| word.to_owned()).collect(),
             options: options.iter().map(Into::into).collect(),
         }))
     }
 
     #[test]
-    fn a_file_stands_behind_its_command() {
+    fn a_file_stands_after_its_command() {
         assert_eq!(of("run saw.bond --set a=1"), call("saw.bond", None, &["run"], &["--set", "a=1"]));
+        assert_eq!(of("run saw.bond --help"), call("saw.bond", None, &["run"], &["--help"]));
+        assert_eq!(of("run saw.bond --set a=-1 -h"), call("saw.bond", None, &["run"], &["--set", "a=-1", "-h"]));
         assert_eq!(of("saw.bond --t-end 2"), call("saw.bond", None, &["run"], &["--t-end", "2"]));
         assert_eq!(of("golden check a.bond x"), call("a.bond", None, &["golden", "check"], &["x"]));
         assert_eq!(of("graph a.bond --graph B -v"), call("a.bond", Some("B"), &["graph"], &["-v"]));
         assert_eq!(of("graph a.bond --graph=B"), call("a.bond", Some("B"), &["graph"], &[]));
+        let files = vec!["a".into(), "b".into()];
+        assert_eq!(of("check a b --json"), Ok(Asked::Own(Own::Check { files, json: true, most: None })));
+        for line in ["watch --port 80 --no-open a.bond --set b=1", "watch a.bond --set b=1 --no-open --port 80"] {
+            let (served, options) = (Served { port: 80, no_open: true }, vec!["--set".into(), "b=1".into()]);
+            assert_eq!(of(line), Ok(Asked::Own(Own::Watch { served, file: "a.bond".into(), options })));
+        }
+        assert_eq!(of("fmt -"), Ok(Asked::Own(Own::Fmt { files: vec!["-".into()], check: false })));
     }
 
     #[test]
@@ -193,12 +275,23 @@ mod tests {
 
     #[test]
     fn what_is_missing_is_said() {
-        assert_eq!(of("run"), Err("give a file behind the command: bond run saw.bond".to_owned()));
-        assert_eq!(of("golden check"), Err("give a file behind the command: bond golden check saw.bond".to_owned()));
-        assert_eq!(of("walk"), Err("there is no command `walk`; bond --help lists them".to_owned()));
-        assert_eq!(of("check --jason a"), Err("check has no option --jason; it has --json".to_owned()));
-        assert_eq!(of("run a.bond --graph"), Err("--graph: give the name of a graph".to_owned()));
-        assert!(matches!(of("run --help"), Ok(Asked::Help(text)) if text.contains("bond run FILE [OPTIONS]")));
-        assert!(matches!(of(""), Ok(Asked::Help(_))));
+        for (line, said) in [
+            ("run", "required arguments were not provided"),
+            ("golden", "requires a subcommand but one was not provided"),
+            ("golden check", "required arguments were not provided"),
+            ("walk", "there is no command `walk`\n"),
+            ("reprot a.bond", "there is no command `reprot`; did you mean `report`?"),
+            ("check --jason a", "unexpected argument '--jason'"),
+            ("run --t-end 2 a.bond", "unexpected argument '--t-end'"),
+            ("run a.bond --limit-statements many", "--limit-statements many: not a number of statements"),
+            ("run a.bond --graph", "--graph: give it a value"),
+            ("watch a.bond --set b=1 --port 1e9", "--port 1e9: not the number of a port"),
+            ("run --help", "Usage: bond run FILE [OPTIONS]"),
+            ("", "Usage: bond"),
+            ("--version", "bond 0"),
+        ] {
+            let told = of(line).expect_err(line);
+            assert!(told.contains(said), "{line}: {told}");
+        }
     }
 }

@@ -3,11 +3,13 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use bg_loaded::Graph;
 use bg_workbench::files::console;
 use bond_graph::{faults, file};
 
 /// Says the faults of all files; exit code 1 where there are any, 2 where a file cannot be read.
-pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
+pub fn check(files: &[PathBuf], json: bool, most: Option<usize>) -> ExitCode {
+    let wanted = file::Wanted { most, ..file::Wanted::default() };
     let mut code = 0;
     for path in files {
         let text = match file::read(path) {
@@ -18,18 +20,9 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
                 continue;
             }
         };
-        match file::graphs(&text, None) {
+        match file::graphs(&text, &wanted) {
             Ok(graphs) if json => drop(graphs),
-            Ok(graphs) => {
-                let names: Vec<String> = graphs
-                    .iter()
-                    .map(|graph| {
-                        let count = graph.models.len();
-                        if count == 1 { graph.name.clone() } else { format!("{} with {count} models", graph.name) }
-                    })
-                    .collect();
-                say(&format!("{}: {}\n", text.name, names.join(", ")), &mut code);
-            }
+            Ok(graphs) => say(&format!("{}: {}\n", text.path.display(), listed(&graphs)), &mut code),
             Err(faults) => {
                 code = code.max(1);
                 if json { say(&faults::json(&text, &faults), &mut code) } else { faults::tell(&text, &faults) }
@@ -37,6 +30,15 @@ pub fn check(files: &[PathBuf], json: bool) -> ExitCode {
         }
     }
     ExitCode::from(code)
+}
+
+/// The graphs, each with the number of its models where it has several.
+fn listed(graphs: &[Graph]) -> String {
+    let one = |Graph { name, models, .. }: &Graph| match models.len() {
+        1 => name.clone(),
+        count => format!("{name} with {count} models"),
+    };
+    if graphs.is_empty() { "only parts".to_owned() } else { graphs.iter().map(one).collect::<Vec<_>>().join(", ") }
 }
 
 fn say(text: &str, code: &mut u8) {

@@ -4,6 +4,7 @@
 //! same as JSON, one line each.
 
 use std::io::{IsTerminal, stderr};
+use std::path::Path;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use bg_loaded::Fault;
@@ -18,7 +19,7 @@ pub fn tell(text: &Text, faults: &[Fault]) {
         eprintln!("{}\n", shown(text, fault, &renderer));
     }
     let count = if faults.len() == 1 { "a fault".to_owned() } else { format!("{} faults", faults.len()) };
-    eprintln!("error: {}: {count}", text.name);
+    eprintln!("error: {}: {count}", text.path.display());
 }
 
 /// A fault as text: what is wrong, its place, what to do.
@@ -28,26 +29,33 @@ pub fn plain(text: &Text, fault: &Fault) -> String {
 }
 
 fn shown(text: &Text, fault: &Fault, renderer: &Renderer) -> String {
-    let title = Level::ERROR.primary_title(&fault.message);
-    let title = match fault.code {
-        Some(code) => title.id(code),
-        None => title,
-    };
-    let bytes = fault.bytes.start.min(text.text.len())..fault.bytes.end.min(text.text.len());
-    let place = Snippet::source(&text.text).path(&text.name).annotation(AnnotationKind::Primary.span(bytes));
+    let (path, source) = place(text, fault);
+    let title = Level::ERROR.primary_title(&fault.message).id(fault.code);
+    let bytes = fault.bytes.start.min(source.len())..fault.bytes.end.min(source.len());
+    let path = path.display().to_string();
+    let place = Snippet::source(source).path(&path).annotation(AnnotationKind::Primary.span(bytes));
     let group: Group<'_> = title.element(place);
     let group = if fault.help.is_empty() { group } else { group.element(Level::HELP.message(&fault.help)) };
     renderer.render(&[group])
 }
 
+/// The file that a fault is in: its path, what stands in it.
+#[must_use]
+pub fn place<'a>(text: &'a Text, fault: &'a Fault) -> (&'a Path, &'a str) {
+    match &fault.file {
+        Some(file) => (&file.path, &file.text),
+        None => (&text.path, &text.text),
+    }
+}
+
 /// A fault for programs.
 #[derive(Serialize)]
 struct Line<'a> {
-    file: &'a str,
+    file: String,
     line: usize,
     column: usize,
     bytes: [usize; 2],
-    code: Option<&'static str>,
+    code: &'static str,
     message: &'a str,
     help: &'a str,
 }
@@ -58,16 +66,11 @@ struct Line<'a> {
 /// Never: texts and numbers can be written.
 #[must_use]
 pub fn json(text: &Text, faults: &[Fault]) -> String {
-    let line = |Fault { code, message, help, place: [line, column], bytes }: &Fault| {
-        let line = Line {
-            file: &text.name,
-            line: *line,
-            column: *column,
-            bytes: [bytes.start, bytes.end],
-            code: *code,
-            message,
-            help,
-        };
+    let line = |fault: &Fault| {
+        let Fault { code, message, help, place: [line, column], bytes, .. } = fault;
+        let file = place(text, fault).0.display().to_string();
+        let bytes = [bytes.start, bytes.end];
+        let line = Line { file, line: *line, column: *column, bytes, code, message, help };
         serde_json::to_string(&line).expect("texts and numbers") + "\n"
     };
     faults.iter().map(line).collect()
@@ -79,9 +82,8 @@ mod tests {
 
     #[test]
     fn a_fault_is_shown_at_its_place() {
-        let text =
-            Text { name: "swing.bond".to_owned(), text: "graph Swing {\n    param mass: kgg = 2;\n}\n".to_owned() };
-        let faults = crate::file::graphs(&text, None).expect_err("there is no unit kgg");
+        let text = Text { path: "swing.bond".into(), text: "graph Swing {\n    param mass: kgg = 2;\n}\n".to_owned() };
+        let faults = crate::file::graphs(&text, &crate::file::Wanted::default()).expect_err("there is no unit kgg");
         let told = plain(&text, &faults[0]);
         assert!(told.starts_with("error[BG0"), "{told}");
         assert!(told.contains("--> swing.bond:2:17") && told.contains("^^^") && told.contains("help: "), "{told}");

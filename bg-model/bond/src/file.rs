@@ -1,14 +1,17 @@
 //! A file to its graphs.
 //!
 //! In: a path. Out: its text, where it is one, in the language of `bond_graph!`; of a robot the text that `bg-import`
-//! makes. The graphs of the text, or its faults.
+//! makes. The graphs of the text and of the files that it uses, or their faults.
 
-use std::fs::File;
+use std::cell::RefCell;
+use std::fs::{File, metadata};
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+use bg_compiler::source::syntax::files::gather;
 use bg_import::{Format, Options, import_file};
-use bg_loaded::{Counted, Fault, Graph, Wanted, load_wanted};
+use bg_loaded::{Counted, Fault, Graph, Opened, load_file};
 use bg_workbench::files::console;
 use bg_workbench::scenes::in_small_letters;
 use thiserror::Error;
@@ -17,6 +20,9 @@ use thiserror::Error;
 const LARGEST: u64 = 8 << 20;
 /// Brackets in brackets: a text has some ten.
 const DEEPEST: usize = 200;
+/// How often a file is read that changes meanwhile, and the pause before it is read again.
+const ATTEMPTS: usize = 5;
+const PAUSE: Duration = Duration::from_millis(20);
 /// The stack of the compiler, bytes: laws may be long.
 const STACK: usize = 1 << 28;
 
@@ -37,6 +43,12 @@ pub enum FileFault {
     /// It is no text.
     #[error("{}: no text in UTF-8", .0.display())]
     NoText(PathBuf),
+    /// It is written all the time.
+    #[error("{}: changes while it is read; wait until it is written", .0.display())]
+    Changing(PathBuf),
+    /// It is Rust, or a robot.
+    #[error("{}: no text of the language alone; give a file such as saw.bond", .0.display())]
+    Other(PathBuf),
     /// Its brackets are too deep for a reader of any kind.
     #[error("{}: brackets in brackets, more than {DEEPEST} deep", .0.display())]
     Deep(PathBuf),
@@ -50,11 +62,11 @@ pub enum FileFault {
     },
 }
 
-/// A text with the name of its file.
+/// A text with the path of its file.
 #[derive(Clone, Debug)]
 pub struct Text {
-    /// The name, for messages.
-    pub name: String,
+    /// The path, for messages; files that the text uses are sought from its folder.
+    pub path: PathBuf,
     /// The text.
     pub text: String,
 }
@@ -64,22 +76,46 @@ pub struct Text {
 /// # Errors
 /// [`FileFault`].
 pub fn read(path: &Path) -> Result<Text, FileFault> {
-    let name = path.display().to_string();
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
     let format = match ending.as_ref().and_then(|ending| ending.to_str()) {
         Some("urdf") => Some(Format::Urdf),
         Some("xml" | "mjcf") => Some(Format::Mjcf),
         _ => None,
     };
-    let text = match format {
-        Some(format) => imported(format, path)?,
-        None => plain(path)?,
-    };
-    let text = Text { name, text };
-    if text.is_deep() { Err(FileFault::Deep(path.to_owned())) } else { Ok(text) }
+    match format {
+        Some(format) => Text { path: path.to_owned(), text: imported(format, path)? }.checked(),
+        None => plain(path),
+    }
+}
+
+/// The text of a file of the language.
+///
+/// # Errors
+/// [`FileFault`]; it is of another kind.
+pub fn read_text(path: &Path) -> Result<Text, FileFault> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("rs" | "urdf" | "xml" | "mjcf") => Err(FileFault::Other(path.to_owned())),
+        _ => plain(path),
+    }
+}
+
+/// A file that a text uses.
+fn open(path: &Path) -> Result<Opened, String> {
+    let Text { path, text } = read(path).map_err(|fault| fault.to_string())?;
+    Ok(Opened { file: itself(&path), text })
+}
+
+/// The file that a path leads to; the path where it leads to none, as that of a text from elsewhere.
+fn itself(path: &Path) -> PathBuf {
+    path.canonicalize().unwrap_or_else(|_| path.to_owned())
 }
 
 impl Text {
+    /// The text, if a reader can follow it.
+    fn checked(self) -> Result<Self, FileFault> {
+        if self.is_deep() { Err(FileFault::Deep(self.path)) } else { Ok(self) }
+    }
+
     /// Whether brackets are in brackets more often than a reader follows.
     #[must_use]
     pub fn is_deep(&self) -> bool {
@@ -95,15 +131,54 @@ impl Text {
     }
 }
 
-fn plain(path: &Path) -> Result<String, FileFault> {
+/// The text of a file as it is at one time.
+fn plain(path: &Path) -> Result<Text, FileFault> {
     let unreadable = |source| FileFault::Unreadable { path: path.to_owned(), source };
+    // A pipe has been written meanwhile, and is read once.
+    let state = || {
+        let metadata = metadata(path).map_err(unreadable)?;
+        Ok(metadata.is_file().then(|| (metadata.len(), metadata.modified().ok())))
+    };
+    let read = || text_of(File::open(path).map_err(unreadable)?, path);
+    at_one_time(state, read)?.ok_or_else(|| FileFault::Changing(path.to_owned()))
+}
+
+/// What is read while the state stays; none where it does not, in several attempts.
+fn at_one_time<S: PartialEq, T, E>(
+    state: impl Fn() -> Result<S, E>,
+    mut read: impl FnMut() -> Result<T, E>,
+) -> Result<Option<T>, E> {
+    let mut before = state()?;
+    for _ in 0..ATTEMPTS {
+        let found = read();
+        let after = state()?;
+        if before == after {
+            return found.map(Some);
+        }
+        before = after;
+        std::thread::sleep(PAUSE);
+    }
+    Ok(None)
+}
+
+/// The text that a reader gives, called `path`.
+///
+/// # Errors
+/// [`FileFault`].
+pub fn text_of(reader: impl Read, path: &Path) -> Result<Text, FileFault> {
+    let path = path.to_owned();
     let mut bytes = Vec::new();
     // A pipe has no length, and a file may grow while it is read.
-    File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes)).map_err(unreadable)?;
-    if bytes.len() as u64 > LARGEST {
-        return Err(FileFault::Large(path.to_owned()));
+    if let Err(source) = reader.take(LARGEST + 1).read_to_end(&mut bytes) {
+        return Err(FileFault::Unreadable { path, source });
     }
-    String::from_utf8(bytes).map_err(|_| FileFault::NoText(path.to_owned()))
+    if bytes.len() as u64 > LARGEST {
+        return Err(FileFault::Large(path));
+    }
+    match String::from_utf8(bytes) {
+        Ok(text) => Text { path, text }.checked(),
+        Err(_) => Err(FileFault::NoText(path)),
+    }
 }
 
 /// The text of a robot. What it has in another way than the file is said.
@@ -115,20 +190,81 @@ fn imported(format: Format, path: &Path) -> Result<String, FileFault> {
     Ok(imported.text)
 }
 
-/// The graphs of a text; where a command asks for one scene only, called `scene` on the command line or not said, only what
-/// runs it.
-///
-/// # Errors
-/// All faults of the first stage that has any.
+/// The files that a text is made of: the one at `path`, those that it uses, and those that it would use if they were there.
 ///
 /// # Panics
 /// The machine has no memory for a thread.
-pub fn graphs(text: &Text, scene: Option<&str>) -> Result<Vec<Graph>, Vec<Fault>> {
+#[must_use]
+pub fn files(path: &Path) -> Vec<PathBuf> {
+    let path = path.to_owned();
+    // With its thread ends what the compiler remembers of a text.
+    let reader = std::thread::spawn(move || {
+        let found = RefCell::new(vec![path.clone()]);
+        let open = |path: &Path| {
+            found.borrow_mut().push(path.to_owned());
+            open(path)
+        };
+        if let Ok(Text { path, text }) = read(&path) {
+            drop(gather(&path, Opened { file: itself(&path), text }, &open));
+        }
+        found.into_inner()
+    });
+    reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+/// What is wanted of a text.
+#[derive(Clone, Debug, Default)]
+pub struct Wanted {
+    /// Where one scene alone is wanted beside the one that stands for the graph, its name on the command line; only what
+    /// runs it is made.
+    pub scene: Option<String>,
+    /// The most statements of a graph with its repetitions and parts written out; none: 20000.
+    pub most: Option<usize>,
+}
+
+/// The graphs of a text.
+///
+/// # Errors
+/// All faults of the first stage that has any, each with the file that it is in.
+///
+/// # Panics
+/// The machine has no memory for a thread.
+pub fn graphs(text: &Text, wanted: &Wanted) -> Result<Vec<Graph>, Vec<Fault>> {
+    let (Text { path, text }, Wanted { scene, most }) = (text.clone(), wanted.clone());
     let counted = if scene.is_some() { Counted::Made } else { Counted::All };
-    let (text, scene) = (text.text.clone(), scene.map(str::to_owned));
     let is_wanted = move |name: &str| scene.as_ref().is_none_or(|scene| in_small_letters(name) == *scene);
-    let compiler = std::thread::Builder::new()
-        .stack_size(STACK)
-        .spawn(move || load_wanted(&text, Wanted { scene: &is_wanted, counted }));
+    let compiler = std::thread::Builder::new().stack_size(STACK).spawn(move || {
+        let first = Opened { file: itself(&path), text };
+        load_file(&path, first, &open, bg_loaded::Wanted { scene: &is_wanted, counted, most })
+    });
     compiler.expect("a thread can be started").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    #[test]
+    fn what_changes_while_it_is_read_is_read_again() {
+        let (version, reads) = (Cell::new(0), Cell::new(0));
+        let at = |last: u32| {
+            reads.set(0);
+            // A writer is done after `last` steps, one during each read.
+            let read = || {
+                reads.set(reads.get() + 1);
+                let found = version.get();
+                version.set(last.min(found + 1));
+                Ok::<u32, ()>(found)
+            };
+            version.set(0);
+            at_one_time(|| Ok(version.get()), read)
+        };
+        assert_eq!((at(0), reads.get()), (Ok(Some(0)), 1));
+        assert_eq!((at(2), reads.get()), (Ok(Some(2)), 3));
+        assert_eq!((at(u32::MAX), reads.get()), (Ok(None), ATTEMPTS));
+        let failed = at_one_time(|| Ok(0), || Err::<(), &str>("gone"));
+        assert_eq!(failed, Err("gone"));
+    }
 }

@@ -5,40 +5,46 @@
 
 mod arguments;
 mod check;
+mod fmt;
 mod new;
+mod watch;
 
+use std::fmt::Display;
 use std::process::ExitCode;
 
-use arguments::{Asked, Call};
+use arguments::{Asked, Call, Own};
 use bg_loaded::BackEnd;
 use bg_workbench::Program;
 use bg_workbench::files::console;
 use bond_graph::{faults, file, maker};
 
 fn main() -> ExitCode {
-    let outcome = match arguments::asked(std::env::args_os().skip(1)) {
-        Ok(Asked::Help(text)) => console::print(&text).map(|()| ExitCode::SUCCESS).map_err(|fault| fault.to_string()),
-        Ok(Asked::Check { files, json }) => return check::check(&files, json),
-        Ok(Asked::New { name }) => new::new(&name).map(|()| ExitCode::SUCCESS),
-        Ok(Asked::Program(call)) => return program(call),
-        Err(fault) => Err(fault),
-    };
-    outcome.unwrap_or_else(|fault| {
-        console::complain(&fault);
-        ExitCode::from(2)
-    })
+    match arguments::asked(std::env::args_os()) {
+        Ok(Asked::Own(Own::Check { files, json, most })) => check::check(&files, json, most),
+        Ok(Asked::Own(Own::Fmt { files, check })) => fmt::fmt(&files, check),
+        Ok(Asked::Own(Own::Watch { served, file, options })) => watch::watch(&file, &options, &served),
+        Ok(Asked::Own(Own::New { name })) => new::new(&name).map_or_else(refused, |()| ExitCode::SUCCESS),
+        Ok(Asked::Program(call)) => program(call),
+        Err(fault) if fault.use_stderr() => refused(console::in_one_line(&fault.render().to_string())),
+        // Help and version.
+        Err(help) => console::printed(help.print()).map_or_else(refused, |()| ExitCode::SUCCESS),
+    }
+}
+
+/// Input that cannot be used.
+fn refused(fault: impl Display) -> ExitCode {
+    console::complain(&fault);
+    ExitCode::from(2)
 }
 
 /// Hands a command of the workbench to the program of a graph.
-fn program(Call { file, graph, is_interpreted, command, options }: Call) -> ExitCode {
+fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -> ExitCode {
     let read = match file::read(&file) {
         Ok(read) => read,
-        Err(fault) => {
-            console::complain(&fault);
-            return ExitCode::from(2);
-        }
+        Err(fault) => return refused(fault),
     };
-    let graphs = match file::graphs(&read, arguments::only_scene(&command, &options).as_deref()) {
+    let wanted = file::Wanted { scene: arguments::only_scene(&command, &options), most };
+    let graphs = match file::graphs(&read, &wanted) {
         Ok(graphs) => graphs,
         Err(faults) => {
             faults::tell(&read, &faults);
@@ -52,9 +58,6 @@ fn program(Call { file, graph, is_interpreted, command, options }: Call) -> Exit
             let program = Program::with(loaded).on_file("bond", &file.display().to_string());
             program.version(env!("CARGO_PKG_VERSION")).main(words.chain(options))
         }
-        Err(fault) => {
-            console::complain(&format!("{}: {fault}", file.display()));
-            ExitCode::from(2)
-        }
+        Err(fault) => refused(format!("{}: {fault}", file.display())),
     }
 }

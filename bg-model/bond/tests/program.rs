@@ -1,7 +1,10 @@
 //! The program as a user calls it: in a folder of its own, by its name, on files.
 
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
 
 use tempfile::TempDir;
 
@@ -123,6 +126,103 @@ fn faults_are_told_at_their_places() {
     assert_eq!((json.status.code(), line["line"].as_u64()), (Some(1), Some(12)));
 }
 
+/// A motor's torque on a shaft that stands in a file of its own.
+const DRIVEN: &str = "
+use \"parts/shaft.bond\";
+graph Driven {
+    part shaft: Shaft { inertia = 4; }
+    Se drive = 2; 1 axle: rotation; drive -> axle -> shaft.end;
+    observe { shaft.speed }
+}";
+const SHAFT: &str = "use \"wheel.bond\";
+part Shaft {
+    param inertia: kg*m^2 = 1;
+    port end: rotation;
+    part wheel: Wheel { inertia = inertia; }
+    end -> wheel.rim;
+    observe { speed: rad/s = wheel.disc.flow }
+}
+graph Alone { part shaft: Shaft; Se brake = -1; 1 axle: rotation; brake -> axle -> shaft.end; observe { shaft.speed } }";
+const WHEEL: &str =
+    "part Wheel {\n    param inertia: kg*m^2 = 1;\n    port rim: rotation; I disc = inertia; rim -> disc;\n}";
+
+/// A folder with them.
+fn driven() -> TempDir {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("parts")).expect("a folder");
+    write(&folder, "driven.bond", DRIVEN);
+    write(&folder, "parts/shaft.bond", SHAFT);
+    write(&folder, "parts/wheel.bond", WHEEL);
+    folder
+}
+
+#[test]
+fn a_file_uses_parts_of_others() {
+    let folder = driven();
+    assert_eq!(
+        told(folder.path(), "check driven.bond parts/shaft.bond parts/wheel.bond"),
+        "driven.bond: Driven\nparts/shaft.bond: Alone\nparts/wheel.bond: only parts\n"
+    );
+    told(folder.path(), "run driven.bond --t-end 1 --step 1 --csv out.csv --no-figures");
+    let csv = std::fs::read_to_string(folder.path().join("out.csv")).expect("a CSV file");
+    let speed: f64 = csv.lines().last().and_then(|row| row.split(',').nth(1)?.parse().ok()).expect("a number");
+    // dw/dt = 2 N*m / 4 kg*m^2.
+    assert!((speed - 0.5).abs() < 1e-12, "{csv}");
+}
+
+#[test]
+fn faults_of_a_used_file_are_told_at_their_places_in_it() {
+    let folder = driven();
+    write(&folder, "parts/wheel.bond", &WHEEL.replace("-> disc", "-> disk"));
+    let place = if cfg!(windows) { "parts\\wheel.bond" } else { "parts/wheel.bond" };
+    for (line, code) in [("check driven.bond", 1), ("run driven.bond", 2)] {
+        let fault = refused(folder.path(), line, code);
+        assert!(fault.contains("wheel.bond:3:50") && fault.contains("did you mean `shaft.wheel.disc`?"), "{fault}");
+    }
+    let json = bond(folder.path(), "check driven.bond --json");
+    let line: serde_json::Value = serde_json::from_slice(&json.stdout).expect("a line of JSON");
+    assert_eq!(
+        (line["file"].as_str(), line["line"].as_u64(), line["column"].as_u64()),
+        (Some(place), Some(3), Some(50))
+    );
+    // Files that use each other, and one that is not there.
+    write(&folder, "parts/wheel.bond", &format!("{WHEEL}\nuse \"../driven.bond\";"));
+    let fault = refused(folder.path(), "check driven.bond", 1);
+    assert!(fault.contains("error[BG0902]") && fault.contains("wheel.bond:5:5"), "{fault}");
+    write(&folder, "parts/shaft.bond", &SHAFT.replace("wheel.bond", "whel.bond"));
+    let fault = refused(folder.path(), "check driven.bond", 1);
+    assert!(fault.contains("shaft.bond:1:5") && fault.contains("cannot read parts"), "{fault}");
+}
+
+#[test]
+fn texts_are_brought_into_one_form() {
+    let folder = folder();
+    let (wild, tame) = ("graph A { // why\nSe f=1 ; 1 j:translation;f->j ;}", "graph A { // why\n    Se f = 1;\n");
+    write(&folder, "wild.bond", wild);
+    write(&folder, "faulty.bond", "graph A { wheel w; }");
+    let output = bond(folder.path(), "fmt --check wild.bond");
+    assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(1), b"wild.bond has another form\n".as_slice()));
+    assert_eq!(std::fs::read_to_string(folder.path().join("wild.bond")).expect("a file"), wild);
+    // What can be formatted is, whatever else is asked for.
+    let fault = refused(folder.path(), "fmt faulty.bond wild.bond missing.bond", 2);
+    assert!(fault.contains("faulty.bond:1:11") && fault.contains("cannot read missing.bond"), "{fault}");
+    assert_eq!(std::fs::read_to_string(folder.path().join("faulty.bond")).expect("a file"), "graph A { wheel w; }");
+    assert!(std::fs::read_to_string(folder.path().join("wild.bond")).expect("a file").starts_with(tame));
+    told(folder.path(), "fmt --check wild.bond");
+    write(&folder, "wild.rs", "fn main() {}");
+    assert!(refused(folder.path(), "fmt wild.rs", 2).contains("no text of the language"));
+}
+
+#[test]
+fn a_text_goes_through_a_pipe() {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_bond"));
+    let command = command.args(["fmt", "-"]).stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    child.stdin.take().expect("a pipe").write_all(b"graph A {1 j;}").expect("it reads");
+    let output = child.wait_with_output().expect("it ends");
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "graph A {\n    1 j;\n}\n");
+}
+
 #[test]
 fn of_several_graphs_one_is_named() {
     let folder = folder();
@@ -152,6 +252,49 @@ fn what_is_no_text_is_one_clear_error() {
     ] {
         let fault = refused(folder.path(), line, 2);
         assert!(fault.contains(said) && !fault.contains("panicked"), "{line}: {fault}");
+    }
+}
+
+#[test]
+fn what_would_not_end_is_one_clear_error() {
+    let folder = folder();
+    let many = "graph G { for i in 0..10000 { for j in 0..10000 { let a[i][j] = 1; } } }";
+    write(&folder, "many.bond", many);
+    let elements =
+        "for i in 0..9999 { C a[i] = k; 0 b[i]: electrical; } for i in 1..9999 { b[i - 1] -> b[i] -> a[i]; }";
+    write(
+        &folder,
+        "large.bond",
+        &format!("graph G {{ param k: F = 1; {elements} {} }}", elements.replace("[i", "[9999 + i")),
+    );
+    for name in ["many", "large"] {
+        let fault = refused(folder.path(), &format!("check {name}.bond"), 1);
+        assert!(
+            fault.contains("error[BG0815]: graph `G` has more than 20000 statements")
+                && fault.contains("--limit-statements")
+        );
+    }
+    write(&folder, "swing.bond", SWING);
+    let fault = refused(folder.path(), "run swing.bond --limit-statements 5", 2);
+    assert!(fault.contains("more than 5 statements"), "{fault}");
+    told(folder.path(), "run swing.bond --limit-statements 50 --t-end 0.1");
+    told(folder.path(), "check swing.bond --limit-statements 50");
+    // Files in files.
+    for k in 0..100 {
+        write(&folder, &format!("{k}.bond"), &format!("use \"{}.bond\"; part P{k} {{ let a = 1; }}", k + 1));
+    }
+    assert!(refused(folder.path(), "check 0.bond", 1).contains("error[BG0903]"));
+    // Numbers that are none.
+    write(&folder, "values.toml", "mass = nan\n");
+    for (line, said) in [
+        ("--set mass=nan", "it must be a finite number"),
+        ("--params values.toml", "it must be a finite number"),
+        ("--input push=nan", "must be a finite number"),
+        ("--t-end nan", "must be a finite number"),
+        ("--t-end 1e300", "choose a longer one"),
+    ] {
+        let fault = refused(folder.path(), &format!("run swing.bond {line}"), 2);
+        assert!(fault.contains(said), "{line}: {fault}");
     }
 }
 
@@ -192,4 +335,89 @@ fn derivatives_are_found_without_rustc() {
     // x = 0.1 cos(w t), w = (k / m)^(1/2), dw/dm = -w / (2 m).
     let expected = 0.1 * 5.0_f64.sin() * 5.0 / 4.0;
     assert!((last[1] - expected).abs() < 1e-8, "{csv}");
+}
+
+/// `bond watch` on a file of a folder; it is ended where this is dropped.
+struct Watch {
+    child: Child,
+    /// `127.0.0.1:PORT`
+    address: String,
+    number: u64,
+}
+
+impl Watch {
+    fn of(folder: &Path, line: &str) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bond"));
+        command.current_dir(folder).arg("watch").args(line.split_whitespace()).args(["--no-open", "--t-end", "0.1"]);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the program starts");
+        let mut told = String::new();
+        BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut told).expect("a line");
+        let address = told.strip_prefix("http://").and_then(|rest| rest.split('/').next()).expect("an address");
+        Self { address: address.to_owned(), child, number: u64::MAX }
+    }
+
+    fn get(&self, path: &str) -> String {
+        let mut stream = TcpStream::connect(&self.address).expect("a server");
+        stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a time");
+        write!(stream, "GET {path} HTTP/1.0\r\n\r\n").expect("it reads");
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).expect("an answer");
+        answer.split_once("\r\n\r\n").expect("a head and a body").1.to_owned()
+    }
+
+    /// The next state in which nothing is being made.
+    fn next(&mut self) -> serde_json::Value {
+        loop {
+            let state = self.get(&format!("/state?after={}", self.number));
+            let state: serde_json::Value = serde_json::from_str(&state).expect("JSON");
+            let number = state["number"].as_u64().expect("a number");
+            let is_other = std::mem::replace(&mut self.number, number) != number;
+            if is_other && number > 0 && state["is_making"] == false {
+                return state;
+            }
+        }
+    }
+}
+
+impl Drop for Watch {
+    fn drop(&mut self) {
+        self.child.kill().and_then(|()| self.child.wait()).expect("it ran");
+    }
+}
+
+#[test]
+fn a_report_is_replaced_when_a_file_is_saved() {
+    let folder = driven();
+    let mut watch = Watch::of(folder.path(), "driven.bond");
+    let first = watch.next();
+    assert_eq!((first["report"].as_u64(), first["fault"].as_str()), (Some(1), None), "{first}");
+    assert!(watch.get("/report").contains("shaft.speed") && watch.get("/").contains("iframe"));
+    // A fault in a used file, which an editor replaces: the last report stays.
+    write(&folder, "new.bond", &WHEEL.replace("-> disc", "-> disk"));
+    std::fs::rename(folder.path().join("new.bond"), folder.path().join("parts/wheel.bond")).expect("a rename");
+    let faulty = watch.next();
+    let fault = faulty["fault"].as_str().expect("a fault");
+    assert!(faulty["report"] == 1 && fault.contains("wheel.bond:3:50") && fault.contains("help: "), "{faulty}");
+    assert!(watch.get("/report").contains("shaft.speed"));
+    // Fixed, and another name of the output.
+    write(&folder, "parts/wheel.bond", WHEEL);
+    assert_eq!(watch.next()["report"], 2);
+    write(&folder, "driven.bond", &DRIVEN.replace("observe { shaft.speed }", "observe { turns: rad/s = shaft.speed }"));
+    assert_eq!(watch.next()["report"], 3);
+    assert!(watch.get("/report").contains("turns"));
+    // A run that is refused is told like a fault.
+    drop(watch);
+    let mut watch = Watch::of(folder.path(), "driven.bond --set nothing=1");
+    let refused = watch.next();
+    assert!(refused["fault"].as_str().is_some_and(|fault| fault.contains("nothing")), "{refused}");
+}
+
+#[test]
+fn what_cannot_be_watched_is_said_at_once() {
+    let folder = folder();
+    assert!(refused(folder.path(), "watch missing.bond --no-open", 2).contains("cannot read missing.bond"));
+    write(&folder, "swing.bond", SWING);
+    let watch = Watch::of(folder.path(), "swing.bond");
+    let port = watch.address.rsplit(':').next().expect("a port");
+    assert!(refused(folder.path(), &format!("watch --port {port} swing.bond --no-open"), 2).contains("--port"));
 }

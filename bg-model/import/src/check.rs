@@ -4,9 +4,10 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::ImportError;
 use crate::number::number;
-use crate::robot::{Kind, Pose, Robot};
+use crate::robot::{Kind, Loop, Pose, Robot};
 
-/// How far the ends of a loop may be apart at the start, m, or turned, rad: more is no rounding.
+/// How far the ends of a loop may be apart at the start, in parts of the largest place of a link, or turned, rad: more
+/// is no rounding.
 const CLOSED: f64 = 1e-9;
 
 /// Loops whose ends are apart at the start, from which no run begins.
@@ -24,8 +25,11 @@ pub fn tell_open_loops(robot: &mut Robot) {
         let motion = Pose { turned: moved, place: travel };
         places[joint.child] = places[joint.parent].then(&joint.in_parent).then(&motion).then(&joint.in_child.inverse());
     }
+    let ends = |closed: &Loop| closed.ends.each_ref().map(|(link, pose)| places[*link].then(pose));
+    let placed = places.iter().copied().chain(robot.loops.iter().flat_map(ends));
+    let extent = placed.fold(0.0_f64, |extent, pose| extent.max(pose.place.amax()));
     for closed in &robot.loops {
-        let [first, second] = closed.ends.each_ref().map(|(link, pose)| places[*link].then(pose));
+        let [first, second] = ends(closed);
         let across = first.inverse().then(&second);
         let gap = if closed.kind == Kind::Prismatic { across.place.xy().norm() } else { across.place.norm() };
         // The angle between the axes that are held.
@@ -34,7 +38,7 @@ pub fn tell_open_loops(robot: &mut Robot) {
             Kind::Revolute => across.turned.column(2).xy().norm(),
             _ => (across.turned - Matrix3::identity()).amax(),
         };
-        if gap > CLOSED || turned > CLOSED {
+        if gap > CLOSED * extent || turned > CLOSED {
             let (name, gap) = (&closed.name, number(gap));
             robot.notes.push(format!(
                 "Loop `{name}` is open at the start, by {gap} m or by an angle: make starts of its joints guesses, or \

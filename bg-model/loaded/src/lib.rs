@@ -1,7 +1,7 @@
 //! Models of `bond_graph!` text that run without rustc: the text is compiled by the compiler of the macro, its programs
 //! are interpreted.
 //!
-//! In: text in the language of the macro. Out: [`Graph`]s, of whose models [`Interpreted`] makes machines for
+//! In: text in the language of the macro, with the files that it uses. Out: [`Graph`]s, of whose models [`Interpreted`] makes machines for
 //! [`bg_model::run::Simulation::over`]. They have the bits of generated code.
 
 mod blueprint;
@@ -12,7 +12,8 @@ mod series;
 mod statics;
 mod text;
 
+pub use bg_compiler::source::syntax::files::{Open, Opened};
 pub use blueprint::Blueprint;
 pub use code::BackEnd;
 pub use interpreted::Interpreted;
-pub use text::{Counted, Fault, Graph, Model, Wanted, load, load_wanted};
+pub use text::{Counted, Fault, Graph, Model, UsedFile, Wanted, load, load_file, syntax_faults};

@@ -1,17 +1,22 @@
 //! Text to blueprints.
 //!
-//! In: text in the language of the macro. Out: the models of its graphs, or all faults at their places.
+//! In: text in the language of the macro, and what opens the files that it uses. Out: the models of its graphs, or all
+//! faults at their places.
 
 use std::fmt;
 use std::ops::Range;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use bg_compiler::fault::Staged;
 use bg_compiler::pipeline::{self, Compiled, Derived, Known};
+use bg_compiler::source::ast::Source;
+use bg_compiler::source::syntax::files::{self, Gathered, Open, Opened};
 use bg_compiler::source::{part, syntax};
 use bg_compiler::tables;
 pub use bg_compiler::tables::Counted;
 use bg_model::description::Description;
-use proc_macro2::{Span, TokenStream, TokenTree};
+use proc_macro2::{TokenStream, TokenTree};
 
 use crate::blueprint::Blueprint;
 use crate::statics;
@@ -39,8 +44,8 @@ pub struct Model {
 /// What is wrong with a text, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The stable code, such as `BG0301`; none of text that is made of no tokens.
-    pub code: Option<&'static str>,
+    /// The stable code, such as `BG0301`.
+    pub code: &'static str,
     /// What is wrong.
     pub message: String,
     /// What to do about it.
@@ -49,27 +54,39 @@ pub struct Fault {
     pub place: [usize; 2],
     /// The bytes of the text that it is about.
     pub bytes: Range<usize>,
+    /// The file of that text, where it is one that the text uses; none: the text itself.
+    pub file: Option<Arc<UsedFile>>,
+}
+
+/// A file that a text uses.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UsedFile {
+    /// Its path.
+    pub path: PathBuf,
+    /// What stands in it.
+    pub text: String,
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { code, message, help, place: [line, column], .. } = self;
-        write!(f, "{line}:{column}: ")?;
-        if let Some(code) = code {
-            write!(f, "[{code}] ")?;
+        let Self { code, message, help, place: [line, column], file, .. } = self;
+        if let Some(file) = file {
+            write!(f, "{}:", file.path.display())?;
         }
-        write!(f, "{message}")?;
+        write!(f, "{line}:{column}: [{code}] {message}")?;
         if help.is_empty() { Ok(()) } else { write!(f, "; {help}") }
     }
 }
 
 /// The graphs of a text with their models. Of a Rust file the calls of `bond_graph!` outside of functions and modules are
-/// the text.
+/// the text. A text alone uses no files.
 ///
 /// # Errors
 /// All faults of the first stage that has any.
 pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
-    load_wanted(text, Wanted { scene: &|_| true, counted: Counted::All })
+    let first = Opened { file: PathBuf::new(), text: text.to_owned() };
+    let open: Open<'_> = &|path| Err(format!("cannot read {}: a text alone uses no files", path.display()));
+    load_file(Path::new(""), first, open, Wanted { scene: &|_| true, counted: Counted::All, most: None })
 }
 
 /// What is wanted of a text.
@@ -80,27 +97,57 @@ pub struct Wanted<'a> {
     pub scene: &'a dyn Fn(&str) -> bool,
     /// Of which programs descriptions tell the operations. To run a model not all of them have to be made.
     pub counted: Counted,
+    /// The most statements of a graph with its repetitions and parts written out; none: 20000.
+    pub most: Option<usize>,
 }
 
-/// The same, but what is not wanted is left out.
+/// The same of the file at `path`, with the files that it uses, each opened by `open`; what is not wanted is left out.
 ///
 /// # Errors
 /// As [`load`].
-pub fn load_wanted(text: &str, wanted: Wanted<'_>) -> Result<Vec<Graph>, Vec<Fault>> {
-    let tokens: TokenStream = text.parse().map_err(|fault: proc_macro2::LexError| {
-        let message = "this is no text of the language: a bracket, a quote or a character is out of place".to_owned();
-        vec![at(fault.span(), None, message, "close what is open, and quote what is text".to_owned())]
-    })?;
-    let of_stage = |faults: Vec<bg_compiler::fault::Fault>| {
-        faults.into_iter().map(|fault| at(fault.span, Some(fault.code), fault.message, fault.help)).collect::<Vec<_>>()
+pub fn load_file(path: &Path, first: Opened, open: Open<'_>, wanted: Wanted<'_>) -> Result<Vec<Graph>, Vec<Fault>> {
+    let gathered = files::gather(path, first, open);
+    graphs(&gathered, wanted).map_err(|faults| placed(&gathered, faults))
+}
+
+/// The faults of syntax of a text, without the files that it uses.
+#[must_use]
+pub fn syntax_faults(text: &str) -> Vec<Fault> {
+    let faults = match files::alone(text) {
+        // A file may have nothing but what it uses.
+        Ok(tokens) if tokens.is_empty() => Vec::new(),
+        Ok(tokens) => syntax::parse(tokens).err().unwrap_or_default(),
+        Err(fault) => vec![fault],
     };
-    let source = syntax::parse(calls(&tokens).unwrap_or(tokens)).map_err(of_stage)?;
-    if let Some(path) = part::unasked(&source) {
-        let message = format!("the part `{}` stands in no file here", path.name.text);
-        let help = "write the part into this file: a text cannot use parts of a Rust crate".to_owned();
-        return Err(vec![at(path.name.places()[0], None, message, help)]);
+    placed(&Gathered::default(), faults)
+}
+
+/// The faults with their places in the files.
+fn placed(gathered: &Gathered, faults: Vec<bg_compiler::fault::Fault>) -> Vec<Fault> {
+    let files: Vec<Arc<UsedFile>> = gathered
+        .files
+        .iter()
+        .map(|file| Arc::new(UsedFile { path: file.path.clone(), text: file.text.clone() }))
+        .collect();
+    let placed = |fault: bg_compiler::fault::Fault| {
+        let bg_compiler::fault::Fault { span, code, message, help } = gathered.named(fault);
+        let (start, bytes, file) = (span.start(), span.byte_range(), gathered.place(span));
+        let file = (file > 0).then(|| Arc::clone(&files[file]));
+        Fault { code, message, help, place: [start.line, start.column + 1], bytes, file }
+    };
+    faults.into_iter().map(placed).collect()
+}
+
+fn graphs(gathered: &Gathered, wanted: Wanted<'_>) -> Staged<Vec<Graph>> {
+    if !gathered.faults.is_empty() {
+        return Err(gathered.faults.clone());
     }
-    let compiled = pipeline::models_where(&source, wanted.scene).map_err(of_stage)?;
+    let tokens = gathered.tokens.clone();
+    let source = Source { most: wanted.most, ..syntax::parse(calls(&tokens).unwrap_or(tokens))? };
+    if let Some(path) = part::unasked(&source) {
+        return Err(vec![part::of_rust(path)]);
+    }
+    let compiled = pipeline::models_where(&source, wanted.scene)?;
     let mut graphs: Vec<Graph> = Vec::new();
     for known in compiled {
         match known {
@@ -160,9 +207,4 @@ fn calls(tokens: &TokenStream) -> Option<TokenStream> {
     };
     let calls: Vec<TokenStream> = tokens.windows(3).filter_map(call).collect();
     (!calls.is_empty()).then(|| calls.into_iter().collect())
-}
-
-fn at(span: Span, code: Option<&'static str>, message: String, help: String) -> Fault {
-    let start = span.start();
-    Fault { code, message, help, place: [start.line, start.column + 1], bytes: span.byte_range() }
 }

@@ -15,9 +15,10 @@ use crate::model::holding::{Redundancy, Slipping};
 use crate::model::nearest::nearest;
 use crate::model::requirement::Impossible;
 
-/// The largest gap of a closed joint, as a part of the largest sum of parts of which a gap in its unit (m or rad)
-/// consists, and of 1 m or rad at least: of the size of the machine.
+/// The largest gap of a closed joint, as a part of the machine's size in its unit; of an angle, of a radian at least.
 pub const CLOSED: f64 = 1e-10;
+/// A gap that is a larger part than this one is more than rounding.
+const EXACT: f64 = 1e-13;
 
 /// One residual row: a component of the gap of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,21 +132,30 @@ fn also_open(others: &[OpenGap]) -> String {
     format!("; also open: {}", names.join(", "))
 }
 
-/// The coordinates nearest to `guess`, to first order, at which all gaps are closed to rounding.
+/// A pose in which the joints are closed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Closed {
+    /// The coordinates.
+    pub coordinates: Vec<f64>,
+    /// Whether the gaps are closed to rounding; where not, no coordinate closes what is left of them.
+    pub is_exact: bool,
+}
+
+/// The coordinates nearest to `guess`, to first order, at which all gaps are closed.
 ///
-/// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates, `terms` the sum
-/// of the absolute values of its terms. Redundant gaps and coordinates without influence are allowed. Without
-/// coordinates the gaps are only checked. Allocates.
+/// `residual` writes one value for each of `gaps`, in its unit (m or rad), for the given coordinates, `extents` how
+/// large the machine is in that unit. Redundant gaps and coordinates without influence are allowed. Without coordinates
+/// the gaps are only checked. Allocates.
 ///
 /// # Errors
-/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 of the machine's size, and of 1 m or rad at least),
+/// [`AssemblyError::Open`] if a gap stays above [`CLOSED`] (1e-10 of the machine's size),
 /// [`AssemblyError::NonFinite`] if a gap is not a number.
 pub fn close(
     guess: &[f64],
     gaps: &'static [Gap],
     residual: &dyn Fn(&[f64], &mut [f64]),
-    terms: &dyn Fn(&[f64], &mut [f64]),
-) -> Result<Vec<f64>, AssemblyError> {
+    extents: &dyn Fn(&[f64], &mut [f64]),
+) -> Result<Closed, AssemblyError> {
     // Half a radian, or half the size of the coordinates, so that the pose is not thrown over into another one that
     // closes as well. Gaps are linear in lengths, so those of a small machine go where the angles want them.
     let largest = |of: &[f64]| of.iter().fold(0.0_f64, |largest, of| largest.max(of.abs()));
@@ -154,18 +164,21 @@ pub fn close(
     let not_finite = |(row, value): (usize, f64)| AssemblyError::NonFinite { gap: gaps[row], value };
     let (coordinates, sizes) = found.map_err(not_finite)?;
     let mut all = vec![0.0; gaps.len()];
-    terms(&coordinates, &mut all);
-    check_closed(gaps, &sizes, &all)?;
-    Ok(coordinates)
+    extents(&coordinates, &mut all);
+    let is_exact = check_closed(gaps, &sizes, &all)?;
+    Ok(Closed { coordinates, is_exact })
 }
 
-fn check_closed(gaps: &[Gap], sizes: &DVector<f64>, terms: &[f64]) -> Result<(), AssemblyError> {
-    // Of an angle a radian counts, of a length a metre: a gap of numbers alone, or one component of it, has no terms
-    // at run time. What can be closed is closed to rounding all the same.
-    let allowed = |unit: &str| {
-        let of_unit = gaps.iter().zip(terms).filter(|(gap, _)| gap.unit == unit);
-        CLOSED * of_unit.fold(1.0_f64, |largest, (_, &terms)| largest.max(terms))
+/// Whether the gaps are closed to rounding.
+fn check_closed(gaps: &[Gap], sizes: &DVector<f64>, extents: &[f64]) -> Result<bool, AssemblyError> {
+    let machine = |unit: &str| {
+        let of_unit = gaps.iter().zip(extents).filter(|(gap, _)| gap.unit == unit);
+        // A radian is the size of an angle, whatever the machine.
+        let least = if unit == "rad" { 1.0 } else { 0.0 };
+        of_unit.fold(least, |largest: f64, (_, &extent)| largest.max(extent))
     };
+    let is_exact = gaps.iter().zip(sizes).all(|(gap, size)| size.abs() <= EXACT * machine(gap.unit));
+    let allowed = |unit: &str| CLOSED * machine(unit);
     let mut joints: Vec<OpenGap> = Vec::new();
     for (&gap, &size) in gaps.iter().zip(sizes.iter()) {
         let open = OpenGap { gap, size, allowed: allowed(gap.unit) };
@@ -180,7 +193,7 @@ fn check_closed(gaps: &[Gap], sizes: &DVector<f64>, terms: &[f64]) -> Result<(),
     }
     joints.sort_by(|a, b| b.size.abs().total_cmp(&a.size.abs()));
     if joints.is_empty() {
-        return Ok(());
+        return Ok(is_exact);
     }
     let largest = joints.remove(0);
     Err(AssemblyError::Open { largest, others: joints })
@@ -196,19 +209,29 @@ mod tests {
         gaps: &'static [Gap],
         residual: impl Fn(&[f64], &mut [f64]),
     ) -> Result<Vec<f64>, AssemblyError> {
-        super::close(guess, gaps, &residual, &|_, terms| terms.fill(1.0))
+        super::close(guess, gaps, &residual, &|_, extents| extents.fill(1.0)).map(|closed| closed.coordinates)
     }
 
     #[test]
     fn what_is_closed_is_a_part_of_the_machine() {
-        for size in [1.0, 1e3, 1e6] {
-            let gap = |part: f64| {
-                super::close(&[], &PIN, &|_, r| r.fill(part * size), &|_, terms| terms.copy_from_slice(&[0.0, size]))
+        for size in [1e-15, 1e-6, 1.0, 1e6] {
+            let close = |part: f64| {
+                super::close(&[], &PIN, &|_, r| r.fill(part * size), &|_, of| of.copy_from_slice(&[0.0, size]))
             };
-            assert!(gap(0.9e-10).is_ok());
-            let AssemblyError::Open { largest, .. } = gap(1.1e-10).expect_err("open") else { panic!("a gap") };
+            assert_eq!(
+                [0.0, 0.9e-13, 1.1e-13, 0.9e-10].map(|part| close(part).expect("closed").is_exact),
+                [true, true, false, false]
+            );
+            let AssemblyError::Open { largest, .. } = close(1.1e-10).expect_err("open") else { panic!("a gap") };
             assert!((largest.allowed / size - 1e-10).abs() < 1e-16, "{largest:?}");
         }
+    }
+
+    #[test]
+    fn what_is_closed_of_an_angle_is_a_part_of_a_radian() {
+        static TILT: [Gap; 1] = [Gap { joint: "pin", component: "", unit: "rad" }];
+        let close = |gap: f64| super::close(&[], &TILT, &|_, r| r[0] = gap, &|_, of| of[0] = 0.0);
+        assert!(close(0.9e-10).is_ok() && close(1.1e-10).is_err());
     }
 
     const fn gap(joint: &'static str, component: &'static str) -> Gap {

@@ -8,11 +8,15 @@ use alloc::rc::Rc;
 use alloc::vec::Vec;
 
 use crate::model::description::Description;
+#[cfg(feature = "std")]
+use crate::model::dynamics::{Abreast, InLanes, Swept, Typed};
 use crate::model::dynamics::{InVectors, Machine, Over, Rates, shared};
 use crate::model::input::Input;
 use crate::model::parameters::{ParameterError, Parameters};
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 use crate::model::scalar::lanes::{Avx2, Avx512};
+#[cfg(feature = "std")]
+use crate::model::scalar::lanes::{Lanes, Vector};
 #[cfg(all(feature = "std", not(target_arch = "x86_64")))]
 use crate::model::scalar::slopes::Eight;
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
@@ -213,6 +217,93 @@ pub trait Followed: Joinable<Eight> {}
 
 #[cfg(all(feature = "std", not(target_arch = "x86_64")))]
 impl<Mo: Joinable<Eight>> Followed for Mo {}
+
+/// A model whose runs can be followed backwards.
+#[cfg(feature = "std")]
+pub trait Reversible: Liftable<Gradient> {
+    /// Its reverse sweeps; none of a model that is too large for them.
+    fn swept(&self) -> Option<Rc<dyn Swept>>;
+}
+
+#[cfg(feature = "std")]
+impl<Me: Mechanism> Reversible for Me {
+    fn swept(&self) -> Option<Rc<dyn Swept>> {
+        self.visit(Sweeps)
+    }
+}
+
+/// Shares the reverse sweeps of a copy of a model.
+#[cfg(feature = "std")]
+struct Sweeps;
+
+#[cfg(feature = "std")]
+impl ModelVisitor<f64> for Sweeps {
+    type Output = Option<Rc<dyn Swept>>;
+
+    fn visit<Mo, const N: usize, const G: usize, const M: usize>(self, model: &Mo) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M> + Clone + 'static,
+    {
+        model.reversed()?;
+        Some(Rc::new(Typed::<Rc<Mo>, N, G, M>::model(Rc::new(model.clone()))))
+    }
+}
+
+/// A model that calculates runs side by side, in the vectors `V`.
+#[cfg(feature = "std")]
+#[doc(hidden)]
+pub trait Laned<V: Vector>: Differentiable {
+    /// It with these values of its parameters, those of each run in a place.
+    ///
+    /// # Errors
+    /// As [`Differentiable::tuned`].
+    fn in_lanes(&self, values: &[Lanes<V>]) -> Result<Box<dyn Abreast<V>>, ParameterError>;
+}
+
+#[cfg(feature = "std")]
+impl<V: Vector, Me: Mechanism> Laned<V> for Me {
+    fn in_lanes(&self, values: &[Lanes<V>]) -> Result<Box<dyn Abreast<V>>, ParameterError> {
+        self.visit_lifted::<Lanes<V>, Lanes<V>, _>(IntoLanes(values))
+    }
+}
+
+/// Makes a model of values of several runs.
+#[cfg(feature = "std")]
+struct IntoLanes<'a, V>(&'a [Lanes<V>]);
+
+#[cfg(feature = "std")]
+impl<V: Vector> LiftedVisitor<Lanes<V>, Lanes<V>> for IntoLanes<'_, V> {
+    type Output = Result<Box<dyn Abreast<V>>, ParameterError>;
+
+    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
+        self,
+        _: &Mo,
+        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
+        lifted: impl Fn(&[Lanes<V>]) -> Result<Li, ParameterError>,
+        _: impl Fn(&[&Li], fn(&[Lanes<V>]) -> Lanes<V>) -> Ot,
+    ) -> Self::Output
+    where
+        Mo: Model<f64, N, G, M> + Clone + 'static,
+        Li: Model<Lanes<V>, N, G, M> + 'static,
+        Ot: Model<Lanes<V>, N, G, M> + 'static,
+    {
+        Ok(Box::new(InLanes::<Li, N, G>(lifted(self.0)?)))
+    }
+}
+
+/// A model whose runs can be made side by side, in the vectors of whatever machine is at hand.
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+pub trait Accompanied: Laned<Avx2> + Laned<Avx512> {}
+
+#[cfg(all(feature = "std", target_arch = "x86_64"))]
+impl<Mo: Laned<Avx2> + Laned<Avx512>> Accompanied for Mo {}
+
+/// A model whose runs can be made side by side, in the vectors of whatever machine is at hand: here none.
+#[cfg(all(feature = "std", not(target_arch = "x86_64")))]
+pub trait Accompanied: Differentiable {}
+
+#[cfg(all(feature = "std", not(target_arch = "x86_64")))]
+impl<Mo: Differentiable> Accompanied for Mo {}
 
 /// Shares a copy of a model in numbers with slopes.
 struct Lifted;

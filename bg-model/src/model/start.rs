@@ -7,8 +7,8 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use crate::model::assembly::{AssemblyError, Gap, close};
-use crate::model::dynamics::Dynamics;
+use crate::model::assembly::{AssemblyError, Closed, Gap, close};
+use crate::model::dynamics::{Dynamics, branches};
 use crate::model::holding::Redundancy;
 use crate::model::nearest::lifted;
 pub use crate::model::reactions::share;
@@ -23,7 +23,7 @@ pub enum StartRoutine {
     Guesses,
     /// The gaps of the joints, in the order of [`StartTable::gaps`].
     Gaps,
-    /// For each gap the sum of the absolute values of its terms.
+    /// For each gap how large the machine is, in the gap's unit.
     GapSizes,
     /// The start state.
     State,
@@ -75,8 +75,8 @@ fn listed<S: Scalar>(count: usize, write: impl FnOnce(&mut [S])) -> Vec<S> {
     list
 }
 
-/// The unknowns: the guesses, those of the pose moved until the joints are closed.
-fn closed<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<f64>, AssemblyError> {
+/// The unknowns, as coordinates: the guesses, those of the pose moved until the joints are closed.
+fn closed<S: Scalar>(of: &dyn Starting<S>) -> Result<Closed, AssemblyError> {
     let StartTable { unknowns, gaps, speeds, required, .. } = of.table();
     let guess = listed(unknowns, |to| of.in_numbers(StartRoutine::Guesses, &[], to));
     let places: Vec<usize> = (0..unknowns).filter(|place| !speeds.contains(place)).collect();
@@ -87,22 +87,24 @@ fn closed<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<f64>, AssemblyError> {
     };
     let pose: Vec<f64> = places.iter().map(|&place| guess[place]).collect();
     let routine = |routine, pose: &[f64], to: &mut [f64]| of.in_numbers(routine, &whole(pose), to);
-    let pose = close(&pose, gaps, &|pose, gaps| routine(StartRoutine::Gaps, pose, gaps), &|pose, sizes| {
-        routine(StartRoutine::GapSizes, pose, sizes)
-    })?;
-    let unknowns = whole(&pose);
+    let Closed { coordinates, is_exact } =
+        close(&pose, gaps, &|pose, gaps| routine(StartRoutine::Gaps, pose, gaps), &|pose, sizes| {
+            routine(StartRoutine::GapSizes, pose, sizes)
+        })?;
+    let unknowns = whole(&coordinates);
     if !required.is_empty() {
         require(required, &listed(required.len(), |to| of.in_numbers(StartRoutine::Required, &unknowns, to)))?;
     }
-    Ok(unknowns)
+    Ok(Closed { coordinates: unknowns, is_exact })
 }
 
-/// The unknowns in the scalar: with what they are more than numbers, as derivatives.
-fn unknowns<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<S>, AssemblyError> {
-    let found = closed(of)?;
+/// The unknowns in the scalar, with what they are more than numbers, as derivatives; whether they close the joints to
+/// rounding.
+fn unknowns<S: Scalar>(of: &dyn Starting<S>) -> Result<(Vec<S>, bool), AssemblyError> {
+    let Closed { coordinates: found, is_exact } = closed(of)?;
     let guess = listed(found.len(), |to| of.in_scalars(StartRoutine::Guesses, &[], to));
     let gaps = |unknowns: &[S]| listed(of.table().gaps.len(), |to| of.in_scalars(StartRoutine::Gaps, unknowns, to));
-    Ok(lifted(&guess, &found, &gaps))
+    Ok((lifted(&guess, &found, &gaps), is_exact))
 }
 
 /// The state at the closed start pose, guessed velocities as they are.
@@ -110,17 +112,18 @@ fn unknowns<S: Scalar>(of: &dyn Starting<S>) -> Result<Vec<S>, AssemblyError> {
 /// # Errors
 /// The pose does not close.
 fn pose<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Vec<S>, AssemblyError> {
-    let unknowns = unknowns(of)?;
+    let (unknowns, _) = unknowns(of)?;
     Ok(listed(system.states(), |to| of.in_scalars(StartRoutine::State, &unknowns, to)))
 }
 
-/// Writes the start state of a model. The kinetic energy that impulses have taken to make it fit, J. Allocates where
-/// there are joints.
+/// Writes the start state of a model. The kinetic energy that impulses have taken to make it fit, J. What no unknown
+/// closes of the gaps of rigid joints, which is little, a projection does: a run would take it for an error of its steps.
+/// Allocates where there are joints.
 ///
 /// # Errors
 /// The pose does not close, or the velocities do not fit.
 pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut [S]) -> Result<S, AssemblyError> {
-    let unknowns = unknowns(of)?;
+    let (unknowns, is_exact) = unknowns(of)?;
     if system.held().is_none() {
         of.in_scalars(StartRoutine::State, &unknowns, x);
         return Ok(S::from_f64(0.0));
@@ -129,6 +132,10 @@ pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut 
     let state = |unknowns: &[S]| listed(system.states(), |to| of.in_scalars(StartRoutine::State, unknowns, to));
     let started = fit(system, &unknowns, speeds, &state, impulse)?;
     x.copy_from_slice(&started.x);
+    if !is_exact {
+        let negative: Vec<S::Switch> = branches(system, 0.0, x).into_iter().map(S::Switch::from).collect();
+        system.project(S::from_f64(0.0), &negative, x);
+    }
     Ok(started.lost)
 }
 
@@ -136,8 +143,8 @@ pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut 
 pub fn sides<S: Scalar>(of: &dyn Starting<S>) -> Vec<f64> {
     let sign = |side: f64| if side < 0.0 { -1.0 } else { 1.0 };
     let mut sides = vec![1.0; of.table().sides];
-    if let Ok(unknowns) = closed(of) {
-        of.in_numbers(StartRoutine::Sides, &unknowns, &mut sides);
+    if let Ok(Closed { coordinates, .. }) = closed(of) {
+        of.in_numbers(StartRoutine::Sides, &coordinates, &mut sides);
     }
     sides.into_iter().map(sign).collect()
 }

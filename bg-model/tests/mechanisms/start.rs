@@ -5,6 +5,7 @@ use bg_model::bond_graph;
 use bg_model::capability::Joints;
 use bg_model::integrator::Dop853;
 use bg_model::nalgebra::SVector;
+use bg_model::run::Simulation;
 use bg_model::scalar::{DoubleDouble, Scalar};
 use bg_model::simulation::{Settings, Span, integrate};
 use bg_model::system::Model;
@@ -128,6 +129,17 @@ bond_graph! {
         observe { v: m/s = slide.flow }
     }
 
+    /// A block on a rigid guide that its start is off by a part of the machine's size, pushed along.
+    graph Guided {
+        param size: m = 1, above 0;
+        param off: 1 = 0;
+        param push: N = 1;
+        body block { mass 2; inertia [0.1, 0.1, 0.1]; start at [size, off * size, 0]; }
+        joint guide: prismatic x (ground -> block) { rigid; }
+        drive pull on guide force = push;
+        observe { x: m = block.position.x; y: m = block.position.y }
+    }
+
     /// A mass that a sink without a joint holds at a place where it is not.
     graph Apart {
         1 v[3]: translation; position x of v start [0, 0.02, 0]; I m = 2; rSe anchor = [0, 0, 0] at x;
@@ -162,6 +174,25 @@ fn a_velocity_that_does_not_fit_a_rigid_joint_is_an_error_with_joint_and_speed()
     let fitting: RigidBar = RigidBar::new(RigidBarParameters { aside: 0.5, ..Default::default() }).unwrap();
     assert!(fitting.start().is_ok());
     assert_eq!(fitting.impulse_energy(), Ok(0.0));
+}
+
+#[test]
+fn what_is_a_little_open_is_closed_before_a_run_and_more_is_refused() {
+    for size in [-40, -20, 0, 20, 40].map(|exponent| 2.0_f64.powi(exponent)) {
+        let guided = |off: f64| Guided::new(GuidedParameters { size, off, push: size }).unwrap();
+        for off in [1e-14, 1e-12, 0.99e-10] {
+            let model: Guided = guided(off);
+            let y = outputs!(Guided, model, model.start().unwrap())[1];
+            assert!(y.abs() <= 1e-14 * size, "{size}: {y:e}");
+            let run = Simulation::new(&model).every(0.5).until(1.0).run().unwrap();
+            let way = run["x"].last().unwrap() / size - 1.25;
+            assert!(way.abs() < 1e-12, "{size}: {way:e}");
+        }
+        let AssemblyError::Open { largest, .. } = guided(1.01e-10).start().unwrap_err() else {
+            panic!("{size}: a gap")
+        };
+        assert!((largest.allowed / size - 1e-10).abs() < 1e-16, "{size}: {largest}");
+    }
 }
 
 #[test]

@@ -6,7 +6,7 @@
 //!     cargo run --release --example mass_spring_damper -- --set damping=1
 
 use bg_model::bond_graph;
-use bg_workbench::{Compiled, Program};
+use bg_workbench::Program;
 
 bond_graph! {
     /// One 1-junction: the force, the mass, the spring and the damper share the velocity.
@@ -45,5 +45,5 @@ bond_graph! {
 }
 
 fn main() -> std::process::ExitCode {
-    Program::with(Compiled::<MassSpringDamper>::new().gradients()).main(std::env::args_os())
+    Program::of::<MassSpringDamper>().main(std::env::args_os())
 }

@@ -6,16 +6,28 @@
 use std::ops::ControlFlow;
 use std::rc::Rc;
 
+#[cfg(not(target_arch = "wasm32"))]
+use bg_analysis::identify::identify;
 use bg_analysis::identify::{Data, Identified, IdentifyError, Variable};
-use bg_analysis::linear::{Equilibrium, LinearError, StateSpace};
+#[cfg(not(target_arch = "wasm32"))]
+use bg_analysis::linear::linearise_at;
+use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium};
 use bg_model::description::Description;
 use bg_model::dynamics::{self, branches};
 use bg_model::extended::Accuracy;
+use bg_model::mechanism::{Accompanied, Differentiable, Followed, Liftable, Reversible};
 use bg_model::parameters::ParameterError;
+#[cfg(not(target_arch = "wasm32"))]
+use bg_model::run::in_lanes;
 use bg_model::run::{LaneError, Request, RunError, Simulation, State, Trajectory};
+use bg_model::scalar::DoubleDouble;
 use bg_model::sensitivity::{Gradients, Objective, Sensitivities, SensitivityError};
+#[cfg(not(target_arch = "wasm32"))]
+use bg_model::sensitivity::{directions, gradient, sensitivities};
 use thiserror::Error;
 
+#[cfg(not(target_arch = "wasm32"))]
+use crate::precision::reference::solve;
 use crate::precision::reference::{ReferenceError, Solution};
 use crate::scenes::Fixed;
 
@@ -50,7 +62,7 @@ pub trait Machine {
     }
 
     /// The derivatives of one number of a run from its own start by the parameters called `by`, by the run followed
-    /// backwards. A program asks for it where [`Maker::has_gradients`](crate::maker::Maker::has_gradients) says so.
+    /// backwards.
     ///
     /// # Errors
     /// As [`Machine::sensitivities`].
@@ -87,9 +99,8 @@ pub trait Machine {
         None
     }
 
-    /// A run from its own start with each of these values of its own parameters, the inputs as they are: each the same
-    /// to the bit as by itself. A program asks for it where [`Maker::has_lanes`](crate::maker::Maker::has_lanes) says
-    /// so.
+    /// A run from its own start with each of these values of its own parameters, the inputs as they are, side by side
+    /// where that is possible: each the same to the bit as by itself.
     fn in_lanes(&self, _request: &Request, _own: &[Vec<f64>]) -> Option<Vec<Result<Trajectory, LaneError>>> {
         None
     }
@@ -150,6 +161,76 @@ impl dyn Machine + '_ {
             Some(state) => simulation.from(state),
             None => simulation,
         }
+    }
+}
+
+/// A model of which all is known that a machine is asked.
+pub struct Complete<Mo> {
+    model: Mo,
+    over_slices: Rc<dyn dynamics::Machine>,
+}
+
+impl<Mo: Differentiable> Complete<Mo> {
+    /// That of `model`.
+    pub fn new(model: Mo) -> Self {
+        Self { over_slices: model.machine(), model }
+    }
+}
+
+/// A page asks a model for its runs and its equilibrium: what else it could be asked is not compiled there.
+impl<Mo> Machine for Complete<Mo>
+where
+    Mo: Followed + Reversible + Accompanied + Liftable<DoubleDouble>,
+{
+    fn model(&self) -> Rc<dyn dynamics::Machine> {
+        Rc::clone(&self.over_slices)
+    }
+
+    fn equilibrium(&self, t: f64, guess: &[f64]) -> Option<Result<Equilibrium, LinearError>> {
+        Some(equilibrium(&self.model, t, guess))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn linearised(&self, state: &State) -> Option<Result<StateSpace, LinearError>> {
+        Some(linearise_at(&self.model, state))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn sensitivities(&self, request: &Request, by: &[&str]) -> Option<Result<Sensitivities, SensitivityError>> {
+        let directions = directions(self.model.description(), by).map_err(Into::into);
+        Some(directions.and_then(|by| sensitivities(&self.model, request, &by)))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn gradient(
+        &self,
+        request: &Request,
+        objective: &Objective<'_>,
+        by: &[&str],
+    ) -> Option<Result<Gradients, SensitivityError>> {
+        let directions = directions(self.model.description(), by).map_err(Into::into);
+        Some(directions.and_then(|by| gradient(&self.model, request, objective, &by)))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn identified(
+        &self,
+        request: &Request,
+        data: &Data,
+        variables: &[Variable],
+        told: &mut dyn FnMut(&[f64], f64),
+    ) -> Option<Result<Identified, IdentifyError>> {
+        Some(identify(&self.model, request, data, variables, told))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn solution(&self, accuracy: Accuracy, instants: &[f64]) -> Option<Result<Solution, ReferenceError>> {
+        Some(solve(&self.model, accuracy, instants, &|_| true))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn in_lanes(&self, request: &Request, own: &[Vec<f64>]) -> Option<Vec<Result<Trajectory, LaneError>>> {
+        Some(in_lanes(&self.model, request, own))
     }
 }
 

@@ -28,14 +28,4 @@ pub trait Maker: Send + Sync {
     /// # Panics
     /// There is no such model, or another number of values.
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError>;
-
-    /// Whether its machines make runs side by side: [`Machine::in_lanes`].
-    fn has_lanes(&self) -> bool {
-        false
-    }
-
-    /// Whether its machines follow runs backwards: [`Machine::gradient`].
-    fn has_gradients(&self) -> bool {
-        false
-    }
 }

@@ -15,6 +15,7 @@ pub enum GraphFault {
     UnknownDomain { name: String, near: Option<String> },
     ArgumentCount { function: String, expected: usize, found: usize },
     NotANode { name: String },
+    NotAValue { name: String },
     OnePortBonds { symbol: &'static str, name: String, count: usize },
     TwoPortBonds { symbol: &'static str, name: String, inward: usize, outward: usize },
     NoBond { name: String },
@@ -89,6 +90,7 @@ impl Explain for GraphFault {
             F::EmptyGraph { .. } => "BG0333",
             F::Reserved { .. } => "BG0334",
             F::Decay => "BG0335",
+            F::NotAValue { .. } => "BG0337",
         }
     }
 
@@ -102,6 +104,7 @@ impl Explain for GraphFault {
                 format!("`{function}` takes {expected} argument(s), not {found}")
             }
             F::NotANode { name } => format!("`{name}` is neither a junction nor an element, so no bond can end at it"),
+            F::NotAValue { name } => format!("`{name}` is a junction or an element, which has no value of its own"),
             F::OnePortBonds { symbol, name, count } => format!("{symbol} `{name}` has one port but {count} bonds"),
             F::TwoPortBonds { symbol, name, inward, outward } => {
                 format!("{symbol} `{name}` needs one half arrow in and one out; it has {inward} in and {outward} out")
@@ -174,6 +177,7 @@ impl Explain for GraphFault {
             }
             F::ArgumentCount { expected, .. } => format!("give it {expected}"),
             F::NotANode { .. } => "name a junction or an element".to_owned(),
+            F::NotAValue { name } => format!("write `{name}.flow` or `{name}.effort`"),
             F::OnePortBonds { name, count: 0, .. } | F::NoBond { name } => {
                 format!("bond `{name}` to a junction, `... -> {name};`, or delete it")
             }

@@ -12,7 +12,6 @@ use super::tape::{Tape, tape};
 use super::{Counts, Deferred, Program, Request, Routine, deferred, schedule};
 use crate::expr::{Id, Pool};
 use crate::system::equations::Iteration;
-use crate::system::magnitude::magnitudes;
 use crate::system::{Jacobian, SecondOrder, Sizes, StateEquations};
 
 /// Longer rates are not inlined where they are compiled for the machine's vectors: they would only fill the cache.
@@ -111,7 +110,7 @@ pub struct Starting {
     pub guesses: Program<1>,
     /// The gaps of the assembly.
     pub gaps: Program<1>,
-    /// The sums of the absolute values of their terms.
+    /// How large the machine is, in the unit of each.
     pub gap_sizes: Program<1>,
     /// The start state.
     pub start_state: Program<1>,
@@ -244,12 +243,11 @@ fn impacts(equations: &StateEquations) -> Option<Program<1>> {
 fn starting(equations: &mut StateEquations) -> Starting {
     let gaps = roots(&equations.gaps, |gap| gap.value);
     let starts = roots(&equations.states, |state| state.start);
-    let pool = &mut equations.pool;
-    let sizes = magnitudes(pool, &gaps);
+    let (pool, requirements) = (&mut equations.pool, &mut equations.requirements);
     Starting {
         guesses: alone(pool, "guesses", &equations.guesses),
         gaps: alone(pool, "gaps", &gaps),
-        gap_sizes: alone(pool, "gap_sizes", &sizes),
+        gap_sizes: alone(&mut requirements.pool, "gap_sizes", &requirements.extents),
         start_state: alone(pool, "start_state", &starts),
         sides: (!equations.sides.is_empty()).then(|| alone(pool, "sides", &equations.sides)),
     }

@@ -25,7 +25,13 @@ pub struct Source {
     pub graphs: Vec<Graph>,
     /// Names that end with a dot: faults of syntax, whose statements are not there.
     pub unfinished: Vec<Name>,
+    /// The most statements of a graph with its repetitions and parts written out; none: [`MOST_STATEMENTS`].
+    pub most: Option<usize>,
 }
+
+/// What a graph has at most, unless its source says otherwise: an electrical ladder of this size is checked in half a
+/// minute.
+pub const MOST_STATEMENTS: usize = 20_000;
 
 /// One `graph NAME { ... }`.
 #[derive(Clone, Debug)]

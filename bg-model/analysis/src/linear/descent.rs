@@ -21,6 +21,10 @@ const FREE: f64 = 1e-11;
 /// A rate that depends on a coordinate by less than this part of the largest derivative does not depend on it.
 const IDLE: f64 = 1e-8;
 
+/// The part of the way to where Newton's step leads that counts as the machine's extent where its positions are nearer
+/// to zero: one that starts at its origin has no other length.
+const AHEAD: f64 = 0.1;
+
 /// A plant near a state.
 pub(super) struct Local {
     /// Its coordinates.
@@ -34,8 +38,12 @@ pub(super) struct Local {
     jacobian: DMatrix<f64>,
     /// Projects the rates on those that have to vanish: all, or all but those that may go on.
     wanted: Option<DMatrix<f64>>,
+    /// The largest position, m.
+    position: f64,
     /// See [`Local::inverse`].
     inverse: OnceCell<DMatrix<f64>>,
+    /// See [`Local::extent`].
+    extent: OnceCell<f64>,
 }
 
 /// How a state behaves that is left alone.
@@ -73,7 +81,9 @@ impl Local {
             Balanced::of(&(&manifold.chart * &here.rates_by_state * &manifold.tangent));
         let wanted = if steady { without_idle(&manifold, &jacobian) } else { None };
         let terms = here.rates_by_state.abs() * manifold.sizes(x);
-        Ok(Self { manifold, rates: here.rates, terms, scales, jacobian, wanted, inverse: OnceCell::new() })
+        let position = manifold.largest_position(x);
+        let (rates, inverse, extent) = (here.rates, OnceCell::new(), OnceCell::new());
+        Ok(Self { manifold, rates, terms, scales, jacobian, wanted, position, inverse, extent })
     }
 
     /// The pseudo-inverse of the derivatives of the rates that have to vanish.
@@ -133,14 +143,23 @@ impl Local {
         (DMatrix::identity(size, size) / h - self.wanted_jacobian()).lu().solve(&self.balanced(&self.rates))
     }
 
-    /// How far a step in balanced coordinates moves the poses.
-    pub fn length(&self, step: &DVector<f64>, x: &DVector<f64>) -> f64 {
-        self.manifold.length(&step.component_mul(&self.scales), x)
+    /// The extent of the machine, m: its largest position, or a part of the way ahead. Of 1 m at least: the steps of a
+    /// smaller one are judged by the rates they leave alone, which need no length.
+    fn extent(&self) -> f64 {
+        *self.extent.get_or_init(|| {
+            let ahead = self.correction(&self.rates).component_mul(&self.scales);
+            self.position.max(AHEAD * self.manifold.way(&ahead)).max(1.0)
+        })
+    }
+
+    /// How far a step in balanced coordinates moves the poses: rad, or part of the machine's extent.
+    pub fn length(&self, step: &DVector<f64>) -> f64 {
+        self.manifold.length(&step.component_mul(&self.scales), self.extent())
     }
 
     /// The state after a straight step in balanced coordinates.
     pub fn moved(&self, plant: &Plant, x: &DVector<f64>, step: &DVector<f64>) -> DVector<f64> {
-        plant.carried(x, &self.manifold.carry(&step.component_mul(&self.scales), x))
+        plant.carried(x, &self.manifold.carry(&step.component_mul(&self.scales), self.extent()))
     }
 }
 

@@ -24,7 +24,7 @@ use super::text::{counted, short};
 const ITERATIONS: usize = 600;
 /// Steps along a free direction on which a force acts: a search that makes so many follows a motion without an end.
 const WITHOUT_REACH: usize = 150;
-/// How far a pose may change in a step of the pseudo-transient: rad; m, or part of the mechanism's size.
+/// How far a pose may change in a step of the pseudo-transient: rad, or part of the mechanism's extent.
 const LONGEST: f64 = 0.1;
 /// Newton's steps are tried where they are shorter than this.
 const NEAR: f64 = 0.02;
@@ -101,7 +101,7 @@ fn search(plant: &Plant, t: f64, guess: &DVector<f64>, steady: bool) -> Result<E
         let h = strides.next(&local, &stability);
         let transient = || {
             let steps = (0..60).map(|k| h * 0.5_f64.powi(k)).filter_map(|h| Some((h, local.direction(Some(h))?)));
-            let (h, step) = { steps }.find(|(_, step)| local.length(step, &x) <= LONGEST)?;
+            let (h, step) = { steps }.find(|(_, step)| local.length(step) <= LONGEST)?;
             strides.made(h);
             let next = local.moved(plant, &x, &step);
             next.iter().all(|value| value.is_finite()).then_some(next)
@@ -152,13 +152,13 @@ impl StrideController {
 /// after it is smaller than the step, in the measure of poses or of all balanced coordinates.
 fn newton(plant: &Plant, local: &Local, x: &DVector<f64>) -> Option<DVector<f64>> {
     let step = local.direction(None)?;
-    let length = local.length(&step, x);
+    let length = local.length(&step);
     if length > NEAR {
         return None;
     }
     let next = local.moved(plant, x, &step);
     let after = local.correction(&plant.derivatives(&next).rates);
-    let is_nearer = local.length(&after, x) < 0.75 * length || after.norm() < 0.75 * step.norm();
+    let is_nearer = local.length(&after) < 0.75 * length || after.norm() < 0.75 * step.norm();
     is_nearer.then_some(next)
 }
 

@@ -137,36 +137,43 @@ impl Manifold {
         }
     }
 
-    /// How far a change of the coordinates moves poses: rad; m, or part of the largest position where that is beyond 1
-    /// m.
-    pub fn length(&self, step: &DVector<f64>, x: &DVector<f64>) -> f64 {
-        let (change, sizes) = (&self.tangent * step, self.sizes(x));
-        let is_pose =
-            |kind: &StateKind| matches!(kind, StateKind::Position(_) | StateKind::Orientation(..) | StateKind::Angle);
-        let poses = self.kinds.iter().zip(change.iter().zip(&sizes)).filter(|(kind, _)| is_pose(kind));
-        poses.fold(0.0, |longest, (kind, (change, size))| {
-            let unit = if matches!(kind, StateKind::Position(_)) { size.max(1.0) } else { 1.0 };
-            longest.max(change.abs() / unit)
-        })
+    /// How far a change of the coordinates moves poses: rad, or part of `extent` (m).
+    pub fn length(&self, step: &DVector<f64>, extent: f64) -> f64 {
+        let by = |of: StateKind| match of {
+            StateKind::Position(_) => 1.0 / extent,
+            StateKind::Orientation(..) | StateKind::Angle => 1.0,
+            _ => 0.0,
+        };
+        let change = &self.tangent * step;
+        self.kinds.iter().zip(&change).fold(0.0, |longest, (&kind, change)| longest.max(change.abs() * by(kind)))
+    }
+
+    /// How far a change of the coordinates moves positions, m.
+    pub fn way(&self, step: &DVector<f64>) -> f64 {
+        self.largest_position(&(&self.tangent * step))
+    }
+
+    /// The largest of these states, or changes of states, that are positions, m.
+    pub fn largest_position(&self, of: &DVector<f64>) -> f64 {
+        let positions = self.kinds.iter().zip(of).filter(|(kind, _)| matches!(kind, StateKind::Position(_)));
+        positions.fold(0.0, |largest, (_, at)| largest.max(at.abs()))
     }
 
     /// How large the states are, so that smaller changes are rounding: an orientation has the size 1, a position that
     /// of the largest one.
     pub fn sizes(&self, x: &DVector<f64>) -> DVector<f64> {
-        let states = || self.kinds.iter().zip(x);
-        let positions = states().filter(|(kind, _)| matches!(kind, StateKind::Position(_)));
-        let largest = positions.fold(0.0_f64, |largest, (_, at)| largest.max(at.abs()));
+        let largest = self.largest_position(x);
         let size = |(kind, at): (&StateKind, &f64)| match kind {
             StateKind::Position(_) => largest,
             StateKind::Orientation(..) => 1.0,
             StateKind::Angle => at.abs().max(1.0),
             _ => at.abs(),
         };
-        DVector::from_iterator(x.len(), states().map(size))
+        DVector::from_iterator(x.len(), self.kinds.iter().zip(x).map(size))
     }
 
-    /// The finite move that changes the coordinates by `step` to first order.
-    pub fn carry(&self, step: &DVector<f64>, x: &DVector<f64>) -> Carry {
+    /// The finite move that changes the coordinates by `step` to first order, in a machine of this `extent` (m).
+    pub fn carry(&self, step: &DVector<f64>, extent: f64) -> Carry {
         let is_momentum = |k: &usize| self.coordinates[*k].role == Role::Momentum;
         let (p, q): (Vec<usize>, Vec<usize>) = (0..step.len()).partition(is_momentum);
         let wanted = step.select_rows(&q);
@@ -176,11 +183,14 @@ impl Manifold {
             .zip(&wanted)
             .filter(|(rest, way)| rest.abs() < 1e-11 * way.abs())
             .for_each(|(rest, _)| *rest = 0.0);
-        let rounding = 1e-12 * wanted.amax();
-        rest.iter_mut().filter(|rest| rest.abs() < rounding).for_each(|rest| *rest = 0.0);
+        let unit = |k: usize| self.coordinates[q[k]].unit;
+        let largest = |of: &str| (0..q.len()).filter(|&k| unit(k) == of).fold(0.0, |most, k| wanted[k].abs().max(most));
+        for (k, rest) in rest.iter_mut().enumerate() {
+            *rest = if rest.abs() < 1e-12 * largest(unit(k)) { 0.0 } else { *rest };
+        }
         let add = self.tangent.select_columns(&q) * rest + self.tangent.select_columns(&p) * step.select_rows(&p);
         // A step of the Runge-Kutta method over 0.005 rad is exact to 1e-14.
-        let steps = (self.length(step, x) / 0.005).ceil().clamp(1.0, 200.0) as usize;
+        let steps = (self.length(step, extent) / 0.005).ceil().clamp(1.0, 200.0) as usize;
         Carry { push: &self.pushes * by_momenta, add, stays: self.stays.clone(), momenta: self.momenta.clone(), steps }
     }
 }

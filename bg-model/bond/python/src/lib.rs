@@ -9,7 +9,7 @@ use bg_loaded::Fault;
 use bg_python::model::{Model, RunFailed};
 use bg_python::table::Table;
 use bg_workbench::Program;
-use bond_graph::file::{self, Text};
+use bond_graph::file::{self, Text, Wanted};
 use bond_graph::{faults, maker};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -19,33 +19,40 @@ pyo3::create_exception!(
     _bond_graph,
     FaultError,
     PyValueError,
-    "Faults of a text; `faults` has each as a dict: line, column, code, message, help."
+    "Faults of a text; `faults` has each as a dict: file, line, column, code, message, help."
 );
 
 /// The model of a file: a text with graphs, a Rust file with calls of `bond_graph!`, a robot in URDF or MJCF.
 #[pyfunction]
-#[pyo3(signature = (path, *, graph=None))]
-fn load(py: Python<'_>, path: PathBuf, graph: Option<&str>) -> PyResult<Model> {
+#[pyo3(signature = (path, *, graph=None, limit_statements=None))]
+fn load(py: Python<'_>, path: PathBuf, graph: Option<&str>, limit_statements: Option<usize>) -> PyResult<Model> {
     let text = py.detach(|| file::read(&path)).map_err(|fault| match fault {
         file::FileFault::Unreadable { .. } => PyOSError::new_err(fault.to_string()),
         fault => PyValueError::new_err(fault.to_string()),
     })?;
-    model(py, text, graph)
+    model(py, &text, graph, limit_statements)
 }
 
-/// The model of a text.
+/// The model of a text. Files that it uses are sought in `folder`.
 #[pyfunction]
-#[pyo3(signature = (text, *, graph=None))]
-fn compile(py: Python<'_>, text: String, graph: Option<&str>) -> PyResult<Model> {
-    let text = Text { name: "<text>".to_owned(), text };
+#[pyo3(signature = (text, *, graph=None, folder=PathBuf::new(), limit_statements=None))]
+fn compile(
+    py: Python<'_>,
+    text: String,
+    graph: Option<&str>,
+    folder: PathBuf,
+    limit_statements: Option<usize>,
+) -> PyResult<Model> {
+    let text = Text { path: folder.join("<text>"), text };
     if text.is_deep() {
         return Err(PyValueError::new_err("brackets in brackets, deeper than any mechanism has them"));
     }
-    model(py, text, graph)
+    model(py, &text, graph, limit_statements)
 }
 
-fn model(py: Python<'_>, text: Text, graph: Option<&str>) -> PyResult<Model> {
-    let graphs = py.detach(|| file::graphs(&text, None)).or_else(|faults| Err(fault_error(py, &text, &faults)?))?;
+fn model(py: Python<'_>, text: &Text, graph: Option<&str>, most: Option<usize>) -> PyResult<Model> {
+    let wanted = Wanted { most, ..Wanted::default() };
+    let graphs = py.detach(|| file::graphs(text, &wanted)).or_else(|faults| Err(fault_error(py, text, &faults)?))?;
     let loaded = maker::Loaded::of(graphs, graph).map_err(PyValueError::new_err)?;
     Ok(Model::new(move || Program::with(loaded.clone())))
 }
@@ -55,8 +62,10 @@ fn fault_error(py: Python<'_>, text: &Text, all: &[Fault]) -> PyResult<PyErr> {
     let told: Vec<String> = all.iter().map(|fault| faults::plain(text, fault)).collect();
     let raised = FaultError::new_err(format!("\n{}", told.join("\n\n")));
     let listed = PyList::empty(py);
-    for Fault { code, message, help, place: [line, column], .. } in all {
+    for fault in all {
+        let Fault { code, message, help, place: [line, column], .. } = fault;
         let one = PyDict::new(py);
+        one.set_item("file", faults::place(text, fault).0.display().to_string())?;
         one.set_item("line", line)?;
         one.set_item("column", column)?;
         one.set_item("code", code)?;

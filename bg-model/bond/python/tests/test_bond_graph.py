@@ -57,3 +57,31 @@ def test_files(tmp_path: pathlib.Path):
     assert len(bg.load(file, graph="Other").run(t_end=0.1, step=0.1)["t"]) == 2
     with pytest.raises(OSError):
         bg.load(tmp_path / "missing.bond")
+
+
+SHAFT = """
+part Shaft { param inertia: kg*m^2 = 2; port end: rotation; I wheel = inertia; end -> wheel; observe { speed: rad/s = wheel.flow } }
+"""
+DRIVEN = """
+use "parts/shaft.bond";
+graph Driven { part shaft: Shaft; Se drive = 3; 1 axle: rotation; drive -> axle -> shaft.end; observe { shaft.speed } }
+"""
+
+
+def test_files_use_parts_of_files(tmp_path: pathlib.Path, monkeypatch: pytest.MonkeyPatch):
+    (tmp_path / "parts").mkdir()
+    shaft = tmp_path / "parts" / "shaft.bond"
+    shaft.write_text(SHAFT)
+    (tmp_path / "driven.bond").write_text(DRIVEN)
+    for model in (bg.load(tmp_path / "driven.bond"), bg.compile(DRIVEN, folder=tmp_path)):
+        # J dw/dt = 3 N*m.
+        assert math.isclose(model.run(t_end=1, step=1)["shaft.speed"][-1], 1.5, rel_tol=1e-9)
+    with pytest.raises(bg.FaultError, match="cannot read parts/shaft.bond"):
+        bg.compile(DRIVEN)
+    monkeypatch.chdir(tmp_path)
+    bg.compile(DRIVEN)
+    shaft.write_text(SHAFT.replace("-> wheel", "-> weel"))
+    with pytest.raises(bg.FaultError) as raised:
+        bg.load("driven.bond")
+    fault = raised.value.faults[0]
+    assert (fault["file"], fault["line"], fault["code"]) == ("parts/shaft.bond", 2, "BG0303")

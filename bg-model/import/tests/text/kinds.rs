@@ -352,6 +352,14 @@ fn a_loop_joint_of_a_urdf_closes_a_loop() {
     let note = "Loop `tie` is open at the start, by 0.25 m or by an angle: make starts of its joints guesses, or give them values \
                 that close it.";
     assert_eq!(open.notes, [note]);
+    // What is open is a part of the machine.
+    for size in [1e-9, 1e9] {
+        let scaled = |gap: f64| {
+            let ends = format!("link1 link='a' xyz='{size} 0 0'/><link2 link='b' xyz='{size} 0 {}'", gap * size);
+            made(&text.replace("link1 link='a' xyz='0.1 0 0'/><link2 link='b' xyz='0.1 0 0'", &ends)).notes.len()
+        };
+        assert_eq!([scaled(1e-10), scaled(1e-8)], [0, 1], "{size} m");
+    }
     let limited = rods("<equality><connect body1='rod' body2='other' anchor='0.5 0 0'/></equality>")
         .replace("name='pin'", "name='pin' range='10 20'");
     assert!(

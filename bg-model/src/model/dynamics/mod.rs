@@ -3,10 +3,15 @@
 //!
 //! In: a [`System`] or [`Model`] whose numbers are in its type. Out: the same as one table of functions, [`Dynamics`]
 //! and [`Machine`]: [`Typed`] in `f64`, where rates, series and eliminations are compiled for the vectors of the machine
-//! at hand; [`Over`] in any scalar; [`InVectors`] for slopes in vectors.
+//! at hand; [`Over`] in any scalar; [`InVectors`] for slopes in vectors; [`InLanes`] for
+//! runs side by side; [`Swept`], its reverse sweeps.
 
+#[cfg(feature = "std")]
+mod lanes;
 mod over;
 mod sloped;
+#[cfg(feature = "std")]
+mod swept;
 mod typed;
 
 use alloc::rc::Rc;
@@ -19,7 +24,7 @@ use nalgebra::Complex;
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::SeriesSize;
 #[cfg(doc)]
-use crate::model::capability::{Elimination, Impacts, Joints, Linearised, SecondOrder, Series, Storages};
+use crate::model::capability::{Elimination, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Sparsity, differences};
@@ -28,8 +33,12 @@ use crate::model::scalar::Scalar;
 #[cfg(doc)]
 use crate::model::system::System;
 use crate::model::system::{Model, Powers, decide_by_sign};
+#[cfg(feature = "std")]
+pub use lanes::{Abreast, InLanes};
 pub use over::Over;
 pub use sloped::{InVectors, Rates};
+#[cfg(feature = "std")]
+pub use swept::Swept;
 pub use typed::Typed;
 
 /// A system of ordinary differential equations: [`System`], over slices. States `x` and all that there is one of for
@@ -74,6 +83,11 @@ pub trait Dynamics<S: Scalar = f64> {
     /// [`System::switch_name`].
     fn switch_name(&self, _index: usize) -> Option<&'static str> {
         None
+    }
+
+    /// [`System::runs_in_lanes`]; not by default.
+    fn runs_in_lanes(&self) -> bool {
+        false
     }
 
     /// [`System::not_finite`].
@@ -224,6 +238,11 @@ pub trait Machine<S: Scalar = f64>: Dynamics<S> {
 
     /// [`Model::powers`].
     fn powers(&self, t: S, x: &[S], negative: &[S::Switch]) -> Powers<S>;
+
+    /// [`Reversed::constants`]; none of a model without reverse sweeps.
+    fn constants(&self) -> &[S] {
+        &[]
+    }
 }
 
 /// The branches of the switches of a system at time `t` (s) and state `x`.

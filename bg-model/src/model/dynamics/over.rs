@@ -9,7 +9,7 @@ use nalgebra::SVector;
 
 use super::{Dynamics, Machine};
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::{Impacts, Joints, Storages};
+use crate::model::capability::{Impacts, Joints, Reversed, Storages};
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::scalar::Scalar;
@@ -151,6 +151,10 @@ where
 
     fn powers(&self, t: S, x: &[S], negative: &[S::Switch]) -> Powers<S> {
         self.0.powers(t, &SVector::from_column_slice(x), &each(negative))
+    }
+
+    fn constants(&self) -> &[S] {
+        self.0.reversed().map_or(&[], Reversed::constants)
     }
 }
 

@@ -11,7 +11,9 @@ use pulp::NullaryFnOnce;
 
 use super::{Dynamics, Machine};
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::{Elimination, Impacts, Joints, Linearised, SecondOrder, Series, SeriesSize, Storages};
+use crate::model::capability::{
+    Elimination, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, SeriesSize, Storages,
+};
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Field, Sparsity, differences};
@@ -103,6 +105,10 @@ where
 
     fn next_break(&self, t: f64) -> f64 {
         self.of.next_break(t)
+    }
+
+    fn runs_in_lanes(&self) -> bool {
+        self.of.runs_in_lanes()
     }
 
     fn state_name(&self, index: usize) -> &'static str {
@@ -274,6 +280,10 @@ where
 
     fn powers(&self, t: f64, x: &[f64], negative: &[bool]) -> Powers<f64> {
         self.of.powers(t, values(x), switches(negative))
+    }
+
+    fn constants(&self) -> &[f64] {
+        self.of.reversed().map_or(&[], Reversed::constants)
     }
 }
 

@@ -8,13 +8,10 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-#[cfg(feature = "std")]
-use nalgebra::SVector;
-
 use super::factors::Factors;
 use super::{Hold, dropped_of, slipping};
 #[cfg(feature = "std")]
-use crate::model::capability::Joints;
+use crate::model::dynamics::Abreast;
 use crate::model::dynamics::Dynamics;
 use crate::model::holding::{HeldNow, Redundancy, Slipping};
 use crate::model::scalar::Scalar;
@@ -208,32 +205,26 @@ pub(crate) struct LoopsInLanes<V> {
 #[cfg(feature = "std")]
 impl<V: Vector> LoopsInLanes<V> {
     /// Room for what is held; none where no joint closes a loop, or what they hold is not inlined.
-    pub fn new<J, const N: usize, const G: usize>(joints: &J) -> Option<Self>
-    where
-        J: Joints<Lanes<V>, N, G>,
-    {
-        let held = joints.held();
-        let dropped = dropped_of(held.rigid.len(), held.closing, joints.kept());
+    pub fn new(system: &dyn Abreast<V>) -> Option<Self> {
+        let held = system.held()?;
+        let dropped = dropped_of(held.rigid.len(), held.closing, system.kept());
         let (factors, pivots) = (Factors::new(dropped.len()), vec![[Lanes::from_f64(0.0); 2]; dropped.len()]);
-        let is_fit = joints.is_hold_inlined() && !held.closing.is_empty();
+        let is_fit = system.is_hold_inlined() && !held.closing.is_empty();
         is_fit.then(|| Self { hold: Hold::new(held), factors, pivots, dropped })
     }
 
     /// A bit for each run whose pose at time `t` (s) and state `x` is not in the neighbourhood of a singular one, and
     /// none of whose motions has come apart, with the largest `energy` (J) so far.
     #[inline(always)]
-    pub fn whole<J, const N: usize, const G: usize>(
+    pub fn whole(
         &mut self,
-        joints: &J,
-        (t, x): (Lanes<V>, &SVector<Lanes<V>, N>),
-        negative: &[V::Mask; G],
+        system: &dyn Abreast<V>,
+        (t, x): (Lanes<V>, &[Lanes<V>]),
+        negative: &[V::Mask],
         energy: Lanes<V>,
-    ) -> u8
-    where
-        J: Joints<Lanes<V>, N, G>,
-    {
+    ) -> u8 {
         let Self { hold, factors, pivots, dropped } = self;
-        joints.inlined_hold(t, x, negative, &mut hold.entries);
+        system.hold(t, x, negative, &mut hold.entries);
         let (mut fastest, mut others) = (t.alike(0.0), t.alike(0.0));
         let HeldNow { flows, mobilities, .. } = hold.held.read(&hold.entries);
         for (row, is_dropped) in dropped.iter().enumerate() {

@@ -5,98 +5,49 @@
 
 use std::ops::Range;
 
-use nalgebra::SVector;
-use pulp::NullaryFnOnce;
-
 use super::explicit::{CalvoFrancoMontijanoRandez, DormandPrince, ExplicitInLanes, Tableau};
 use super::nystrom::NystromInLanes;
 use super::steps::{Begin, Forces, Rates};
 use super::{AnyMethod, Scale};
-use crate::model::capability::SecondOrder;
+use crate::model::dynamics::Abreast;
 use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector, take};
-use crate::model::system::System;
 
 /// A system side by side, its switches frozen.
-#[derive(Debug)]
-pub(crate) struct Side<'a, Sys, V: Vector, const N: usize, const G: usize> {
+#[derive(Clone, Copy)]
+pub(crate) struct Side<'a, V: Vector> {
     /// The system.
-    pub system: &'a Sys,
+    pub system: &'a dyn Abreast<V>,
     /// Where the guard of each switch is negative.
-    pub negative: &'a [V::Mask; G],
+    pub negative: &'a [V::Mask],
 }
 
-struct Rate<'a, Sys, V: Vector, const N: usize, const G: usize> {
-    side: &'a Side<'a, Sys, V, N, G>,
-    t: Lanes<V>,
-    x: &'a [Lanes<V>],
-    dx: &'a mut [Lanes<V>],
-}
-
-impl<Sys, V: Vector, const N: usize, const G: usize> NullaryFnOnce for Rate<'_, Sys, V, N, G>
-where
-    Sys: System<Lanes<V>, N, G>,
-{
-    type Output = ();
-
+impl<V: Vector> Rates<Lanes<V>> for Side<'_, V> {
     #[inline(always)]
-    fn call(self) {
-        let Self { side, t, x, dx } = self;
-        side.inlined_rate(t, x, dx);
-    }
-}
-
-/// The numbers of all states as the system takes them.
-#[inline(always)]
-fn whole<V: Vector, const N: usize>(of: &[Lanes<V>]) -> SVector<Lanes<V>, N> {
-    SVector::from(*of.first_chunk().expect("there is a number for each state"))
-}
-
-impl<Sys, V: Vector, const N: usize, const G: usize> Rates<Lanes<V>> for Side<'_, Sys, V, N, G>
-where
-    Sys: System<Lanes<V>, N, G>,
-{
-    #[inline(never)]
     fn rate(&self, t: Lanes<V>, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
-        V::vectorized(Rate { side: self, t, x, dx });
+        self.system.rate(t, x, self.negative, dx);
     }
 
     #[inline(always)]
     fn inlined_rate(&self, t: Lanes<V>, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
-        let mut rate = SVector::from([t; N]);
-        self.system.always_inlined_rate(t, &whole(x), self.negative, &mut rate);
-        dx.copy_from_slice(&rate.data.0[0]);
+        self.system.rate(t, x, self.negative, dx);
     }
 }
 
-impl<Sys, V: Vector, const N: usize, const G: usize> Forces<Lanes<V>> for Side<'_, Sys, V, N, G>
-where
-    Sys: System<Lanes<V>, N, G>,
-{
+impl<V: Vector> Forces<Lanes<V>> for Side<'_, V> {
     #[inline(always)]
     fn second(&self) -> Range<usize> {
-        self.system.second_order().map_or(0..0, |second| second.states())
+        self.system.second()
     }
 
     #[inline(always)]
     fn at_start(&self, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
-        if let Some(second) = self.system.second_order() {
-            let mut rate = whole(dx);
-            second.second_derivatives(&whole(x), &mut rate);
-            dx.copy_from_slice(&rate.data.0[0]);
-        }
+        self.system.second_derivatives(x, dx);
     }
 
     #[inline(always)]
     fn at_stage(&self, t: Lanes<V>, x: &[Lanes<V>], dx: &mut [Lanes<V>]) {
-        match self.system.second_order() {
-            Some(second) => {
-                let mut rate = SVector::from([t; N]);
-                second.forces(t, &whole(x), self.negative, &mut rate);
-                dx.copy_from_slice(&rate.data.0[0]);
-            }
-            None => self.inlined_rate(t, x, dx),
-        }
+        self.system.forces(t, x, self.negative, dx);
     }
 }
 

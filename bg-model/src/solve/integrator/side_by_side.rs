@@ -83,6 +83,12 @@ impl<S: Copy, const W: usize, const R: usize> Stack<S, W, R> {
         &self.groups
     }
 
+    /// The same, to be changed.
+    #[inline(always)]
+    pub fn groups_mut(&mut self) -> &mut [(usize, [[S; W]; R])] {
+        &mut self.groups
+    }
+
     /// Writes a row.
     #[inline(always)]
     pub fn set_row(&mut self, row: usize, numbers: &Padded<S, W>) {

@@ -10,15 +10,14 @@ use thiserror::Error;
 
 use super::clock::Clock;
 use super::{Made, Reason, Request, RunError, Simulation, Trajectory, observer};
-use crate::model::dynamics::{Machine, shared};
-use crate::model::mechanism::{LiftedVisitor, Mechanism};
-use crate::model::parameters::{ParameterError, Parameters};
+use crate::model::dynamics::{Abreast, Machine};
+use crate::model::mechanism::Accompanied;
+use crate::model::parameters::ParameterError;
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::lanes::{Avx2, Avx512};
 use crate::model::scalar::lanes::{Lanes, Vector};
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::slopes::Slopes;
-use crate::model::system::Model;
 use crate::solve::integrator::{AnyInLanes, AnyMethod, Change, Method};
 use crate::solve::simulation::{Span, lanes};
 
@@ -42,19 +41,15 @@ pub enum LaneError {
 /// tolerances up to 1e-10, of models with an input that changes, with an iteration in their rate, or of more than some
 /// 400 operations; and those that close a loop on another side than the first, or whose joints hold another motion
 /// twice.
-pub fn in_lanes<Me: Mechanism>(
-    model: &Me,
-    request: &Request,
-    values: &[Vec<f64>],
-) -> Vec<Result<Trajectory, LaneError>> {
+pub fn in_lanes(model: &dyn Accompanied, request: &Request, values: &[Vec<f64>]) -> Vec<Result<Trajectory, LaneError>> {
     let many = Many { model, request, values };
     #[cfg(target_arch = "x86_64")]
     if request.method.is_for_lanes() {
         if Avx512::is_at_hand() {
-            return model.visit_lifted::<Lanes<Avx512>, Lanes<Avx512>, _>(many);
+            return many.together::<Avx512>(|values| model.in_lanes(values));
         }
         if Avx2::is_at_hand() {
-            return model.visit_lifted::<Lanes<Avx2>, Lanes<Avx2>, _>(many);
+            return many.together::<Avx2>(|values| model.in_lanes(values));
         }
     }
     many.all_alone()
@@ -68,49 +63,39 @@ struct Own {
 }
 
 /// What is to be made.
-struct Many<'a, Me> {
-    model: &'a Me,
+struct Many<'a> {
+    model: &'a dyn Accompanied,
     request: &'a Request,
     values: &'a [Vec<f64>],
 }
 
-impl<Me: Mechanism> Many<'_, Me> {
+impl Many<'_> {
     /// The run with these values by itself.
     fn alone(&self, values: &[f64]) -> Result<Trajectory, LaneError> {
-        let model = Me::make(Me::Parameters::of_values(values), &self.model.inputs())?;
-        Ok(Simulation::of(&model, self.request.clone()).run()?)
+        Ok(Simulation::over(self.model.tuned(values)?, self.request.clone()).run()?)
     }
 
     fn all_alone(&self) -> Vec<Result<Trajectory, LaneError>> {
         self.values.iter().map(|values| self.alone(values)).collect()
     }
-}
 
-impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me> {
-    type Output = Vec<Result<Trajectory, LaneError>>;
-
-    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
-        self,
-        model: &Mo,
-        other: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
-        lifted: impl Fn(&[Lanes<V>]) -> Result<Li, ParameterError>,
-        _: impl Fn(&[&Li], fn(&[Lanes<V>]) -> Lanes<V>) -> Ot,
-    ) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M> + Clone + 'static,
-        Li: Model<Lanes<V>, N, G, M>,
-        Ot: Model<Lanes<V>, N, G, M>,
-    {
+    /// The runs side by side, as far as that is possible, in vectors in which `lifted` makes the model.
+    fn together<V: Vector>(
+        &self,
+        lifted: impl Fn(&[Lanes<V>]) -> Result<Box<dyn Abreast<V>>, ParameterError>,
+    ) -> Vec<Result<Trajectory, LaneError>> {
         let settings = self.request.settings(0.0);
         let method: AnyMethod = self.request.method.method(self.request.fixed_step);
         let span = Span { t0: 0.0, t_end: self.request.t_end };
-        let Some(together) = AnyInLanes::of(&method, N).filter(|_| lanes::fits(model, span, &settings)) else {
+        let model = self.model.machine();
+        let sizes = [model.states(), model.switches()];
+        let Some(together) = AnyInLanes::of(&method, sizes[0]).filter(|_| lanes::fits(&*model, span, &settings)) else {
             return self.all_alone();
         };
         let clock = Clock::started();
         // What each run has of its own: its model, its start, its method.
         let made = |values: &Vec<f64>| -> Option<Own> {
-            let model = shared(other(values).ok()?);
+            let model = self.model.tuned(values).ok()?;
             let start = model.start().ok()?;
             Some(Own { model, start, method: method.clone() })
         };
@@ -128,7 +113,7 @@ impl<V: Vector, Me: Mechanism> LiftedVisitor<Lanes<V>, Lanes<V>> for Many<'_, Me
         });
         let mut finished: Vec<_> = self.values.iter().map(|_| None).collect();
         let pack = |values: &[Lanes<V>]| lifted(values).expect("models were made of these parameters");
-        lanes::integrate(jobs, together, pack, span, &settings, &mut |number, (recorder, _), finish| {
+        lanes::integrate(jobs, together, pack, span, &settings, sizes, &mut |number, (recorder, _), finish| {
             finished[number] = finish.map(|finish| (recorder, finish));
         });
         let method = method.name();

@@ -74,6 +74,11 @@ impl<'a> Stepper<'a> {
     /// Takes over an attempt of size `h` (s) to `end`, which was made elsewhere. Its method is to know its stages.
     pub fn take_over(&mut self, h: f64, end: PointRef<'_>) {
         self.end.become_that(end);
+        self.arrived(h);
+    }
+
+    /// The same where the end is written already.
+    pub fn arrived(&mut self, h: f64) {
         (self.h, self.dense_is_ready) = (h, false);
     }
 
@@ -225,8 +230,8 @@ impl<'a> Stepper<'a> {
         if !self.dense_is_ready {
             let before = self.statistics.rate_evaluations;
             let h = self.h;
-            let (method, flow, start, end, _) = self.split();
-            method.prepare_dense(&flow, start.borrowed(), h, end.borrowed());
+            let (method, flow, start, end, scale) = self.split();
+            method.prepare_dense(&flow, start.borrowed(), h, end.borrowed(), scale);
             self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
             self.dense_is_ready = true;
         }

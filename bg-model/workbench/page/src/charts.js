@@ -16,11 +16,15 @@ export function valueAt(times, values, time) {
   return a === null || b === null ? null : a + part * (b - a);
 }
 
-/** The range shown, so that rounding noise does not fill a chart. */
-function range(least, largest) {
+/** The largest magnitude of some values; those that are none are left out. */
+const magnitude = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+
+/** The range shown, so that rounding noise beside values as large as `beside` does not fill a chart. */
+function range(least, largest, beside) {
   if (least === null || largest === null) return [-1, 1];
-  const size = Math.max(Math.abs(least), Math.abs(largest));
-  const span = Math.max(largest - least, size < 1e-12 ? 1e-6 : 1e-6 * size);
+  const own = magnitude([least, largest]);
+  const size = own > 1e-12 * beside ? own : beside;
+  const span = Math.max(largest - least, size > 0 ? 1e-6 * size : 1e-6);
   const middle = (least + largest) / 2;
   return [middle - 0.55 * span, middle + 0.55 * span];
 }
@@ -76,6 +80,11 @@ export class Charts {
     return this.#charts;
   }
 
+  /** The largest magnitude in charts of this unit. */
+  size(unit) {
+    return magnitude(this.#charts.filter((chart) => chart.unit === unit).map((chart) => chart.size));
+  }
+
   /** The part of time shown, s; `null` for all of it. */
   get span() {
     return this.#span ?? [this.clock.start, this.clock.end];
@@ -95,7 +104,7 @@ class Chart {
 
   constructor(charts, parent, times, { title, unit, curves }, height) {
     Object.assign(this, { charts, times, title, unit, curves, height });
-    this.values = curves.map((curve) => curve.values);
+    this.#take(curves);
     // Of many curves those that stay as they are would only hide the others.
     const isStill = (values) => values.every((value) => value === values[0]);
     const still = curves.length > 3 ? curves.flatMap((_, index) => (isStill(this.values[index]) ? [index] : [])) : [];
@@ -136,6 +145,11 @@ class Chart {
     this.#plot?.setSeries(index + 1, { show });
   }
 
+  #take(curves) {
+    this.values = curves.map((curve) => curve.values);
+    this.size = magnitude(this.values.map(magnitude));
+  }
+
   /** Whether a chart has these curves. */
   fits({ title, unit, curves }) {
     const isSame = title === this.title && unit === this.unit && curves.length === this.curves.length;
@@ -145,7 +159,7 @@ class Chart {
   /** The same curves of another run. */
   update(times, curves) {
     this.times = times;
-    this.values = curves.map((curve) => curve.values);
+    this.#take(curves);
     this.#plot?.setData([times, ...this.values], false);
     this.zoom();
   }
@@ -219,7 +233,10 @@ class Chart {
       legend: { show: false },
       padding: [8, 12, 0, 0],
       cursor: { drag: { x: false, y: false }, y: false, points: { show: false }, bind: { dblclick: () => null } },
-      scales: { x: { time: false, min, max }, y: { range: (_, least, largest) => range(least, largest) } },
+      scales: {
+        x: { time: false, min, max },
+        y: { range: (_, least, largest) => range(least, largest, this.charts.size(this.unit)) },
+      },
       axes: [
         { ...axis, values: labels, size: 26, gap: 4 },
         {

@@ -72,10 +72,6 @@ struct Question<'a> {
 }
 
 pub fn gradient(program: &Program, arguments: &GradientArguments) -> Result<ExitCode, InputError> {
-    if !program.models.maker().has_gradients() {
-        let fault = "this program has no such command; its `main` asks for it by `Compiled::gradients()`".to_owned();
-        return Err(InputError::Unknown { option: "gradient", fault });
-    }
     let values = &arguments.model;
     let graph = program.models.graph().description;
     let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;

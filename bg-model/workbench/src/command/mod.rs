@@ -133,7 +133,7 @@ impl From<crate::precision::case::CaseError> for InputError {
 pub(crate) fn main(program: &Program, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = command(program).try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
     let outcome = match cli {
-        Err(fault) if fault.use_stderr() => return refuse(&one_line(&fault)),
+        Err(fault) if fault.use_stderr() => return refuse(&console::in_one_line(&fault.render().to_string())),
         // Help and version.
         Err(help) => Ok(ended(console::printed(help.print()).err())),
         Ok(Cli { command: None, run }) => run::simulate(program, &run, None),
@@ -183,7 +183,6 @@ fn command(program: &Program) -> clap::Command {
     let texts = &program.texts;
     let command = Cli::command().name(texts.name.clone()).bin_name(texts.name.clone()).version(texts.version.clone());
     let command = every(command.about(texts.about.clone()).after_help(help.clone()), program, &texts.name);
-    let command = command.mut_subcommand("gradient", |gradient| gradient.hide(!program.models.maker().has_gradients()));
     let command = command.mut_subcommand("report", |report| report.after_help(help.clone()));
     command.mut_subcommand("run", |run| run.after_help(help))
 }
@@ -239,14 +238,4 @@ fn refuse(fault: &impl Display) -> ExitCode {
 fn ended(faults: impl IntoIterator<Item = impl Display>) -> ExitCode {
     let failed = faults.into_iter().inspect(console::complain).count() > 0;
     if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS }
-}
-
-/// What clap says in several lines, in one.
-fn one_line(fault: &clap::Error) -> String {
-    let text = fault.render().to_string();
-    let told =
-        text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
-    let told: Vec<&str> = told.filter(|line| !line.is_empty()).collect();
-    let line = told.join("; ");
-    format!("{}; --help says more", line.strip_prefix("error: ").unwrap_or(&line))
 }

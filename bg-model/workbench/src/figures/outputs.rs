@@ -46,7 +46,9 @@ fn draw(heading: &str, recording: &Recording, components: &[OutputInfo]) -> Resu
     let times = &recording.times;
     let (Some(start), Some(end)) = (times.first(), times.last()) else { return Err(FigureError::Empty) };
     let range = extent(curves.iter().flat_map(|values| values.iter().copied()));
-    let range = widened(range.clone(), least_span(&range));
+    let alike = recording.columns.iter().filter(|column| column.unit == components[0].unit);
+    let beside = extent(alike.flat_map(|column| column.values.iter().copied()));
+    let range = widened(range.clone(), least_span(&range, &beside));
     let in_panel = if components.len() > 3 { 3 } else { 1 };
     let panels = components.len() / in_panel;
     figure(&literally(heading), |area| {
@@ -91,11 +93,13 @@ fn name_width(outputs: &[OutputInfo]) -> i32 {
     8 * longest.unwrap_or(0) as i32 + 16
 }
 
-/// The smallest span that a panel of values in `range` shows, so that rounding noise does not fill it.
-fn least_span(range: &Range<f64>) -> f64 {
+/// The smallest span that a panel of values in `range` shows, so that rounding noise does not fill it: that of zeros
+/// beside other values of the unit, which are in `beside`.
+fn least_span(range: &Range<f64>, beside: &Range<f64>) -> f64 {
     const NOTHING: f64 = 1e-12;
-    let magnitude = range.start.abs().max(range.end.abs());
-    if magnitude < NOTHING { STILL } else { STILL * magnitude }
+    let magnitude = |of: &Range<f64>| of.start.abs().max(of.end.abs());
+    let size = if magnitude(range) > NOTHING * magnitude(beside) { magnitude(range) } else { magnitude(beside) };
+    if size > 0.0 { STILL * size } else { STILL }
 }
 
 #[cfg(test)]
@@ -104,8 +108,9 @@ mod tests {
 
     #[test]
     fn a_small_quantity_fills_its_panel_and_noise_does_not() {
-        assert_eq!(least_span(&(0.0..2e-9)), 2e-15);
-        assert_eq!(least_span(&(-1e-15..1e-15)), STILL);
-        assert!(least_span(&(1.0..1.0 + 1e-15)) > 1e-9);
+        let alone = |range: Range<f64>| least_span(&range, &range);
+        assert_eq!([2e-9, 2e-18, 0.0].map(|size| alone(0.0..size)), [STILL * 2e-9, STILL * 2e-18, STILL]);
+        assert_eq!(least_span(&(-1e-15..1e-15), &(-1.0..0.5)), STILL);
+        assert!(alone(1.0..1.0 + 1e-15) > 1e-9);
     }
 }

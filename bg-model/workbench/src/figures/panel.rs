@@ -154,7 +154,7 @@ pub fn time_span(start: f64, end: f64) -> Range<f64> {
     if end > start { start..end } else { start..start + 1.0 }
 }
 
-/// The smallest span worth showing of a quantity that does not move; SI units.
+/// The smallest span worth showing of a quantity that does not move, in parts of its size.
 pub const STILL: f64 = 1e-6;
 
 /// One quantity over time.

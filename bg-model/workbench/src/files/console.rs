@@ -32,6 +32,16 @@ pub fn note(note: &impl Display) {
     let _ = writeln!(stderr(), "note: {}", one_line(&note.to_string()));
 }
 
+/// What clap says of the words of a command line in several lines, in one.
+#[must_use]
+pub fn in_one_line(text: &str) -> String {
+    let told =
+        text.lines().map(str::trim).take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"));
+    let told: Vec<&str> = told.filter(|line| !line.is_empty()).collect();
+    let line = told.join("; ").replace(":; ", ": ");
+    format!("{}; --help says more", line.strip_prefix("error: ").unwrap_or(&line))
+}
+
 /// `outcome`, where a reader that has gone away is none of the writer's faults.
 pub(super) fn unless_closed(outcome: io::Result<()>) -> io::Result<()> {
     match outcome {

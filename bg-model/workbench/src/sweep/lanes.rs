@@ -1,12 +1,11 @@
-//! Runs of a sweep side by side, in the vectors of the machine: for programs that ask for it by
-//! [`Compiled::lanes`](crate::compiled::Compiled::lanes), since it is compiled for each of their models.
+//! Runs of a sweep side by side, in the vectors of the machine.
 //!
 //! In: the values of all parameters in each of some runs. Out: what each run gives, the same to the bit as by itself.
 
 use bg_model::run::{LaneError, RunError, Stopped, Trajectory};
 
 use super::plan::Plan;
-use super::runs::Asked;
+use super::runs::{self, Asked};
 use crate::parameters::Values;
 use crate::running::{Begin, Outcome};
 use crate::scenes::own_values;
@@ -29,8 +28,11 @@ pub fn many(asked: Asked<'_>, values: &[Vec<f64>]) -> Vec<Result<Outcome, String
     let made = |own: &[f64]| models.maker().make(scene.index, own, inputs);
     // Any model that can be made knows the inputs of all.
     let model = each.iter().find_map(|own| made(own).ok());
-    let runs = model.map(|model| model.in_lanes(request, &each).expect("its maker says that it has lanes"));
-    let mut runs = runs.into_iter().flatten();
+    let runs = model.map(|model| model.in_lanes(request, &each));
+    if let Some(None) = runs {
+        return values.iter().map(|values| runs::run(asked, &Begin::Model, values)).collect();
+    }
+    let mut runs = runs.into_iter().flatten().flatten();
     let outcome = |own: Result<Values, String>| {
         let own = own?;
         match runs.next() {

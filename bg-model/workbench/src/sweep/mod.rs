@@ -134,7 +134,7 @@ pub fn sweep(
     let job = Job::new(program, plan, folder.recipe());
     let (scene, inputs, request) = (plan.scene, &plan.chosen.inputs[..], &plan.request);
     let asked = runs::Asked { models: &program.models, scene, inputs, request };
-    if program.models.maker().has_lanes() && lanes::may_gain(plan) {
+    if lanes::may_gain(plan) {
         let make = |numbers: &[usize]| job.runs_by(numbers, |values| lanes::many(asked, values));
         return all(&job, folder, share, threads, told, (lanes::TOGETHER, &make));
     }

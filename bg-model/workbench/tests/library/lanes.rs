@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use bg_model::bond_graph;
+use bg_workbench::Program;
 use bg_workbench::sweep::folder::Folder;
 use bg_workbench::sweep::plan::Plan;
 use bg_workbench::sweep::{Outcome, Share, recipe, sweep};
-use bg_workbench::{Compiled, Program};
 
 bond_graph! {
     /// A block on a spring, whose contact resists its two directions differently. It knows no speed above a limit.
@@ -43,7 +43,7 @@ x = ["max", "final", "integral"]
 "#;
 
 fn in_lanes() -> Program {
-    Program::with(Compiled::<Block>::new().lanes())
+    Program::of::<Block>()
 }
 
 /// Makes the sweep of `plan` on so many threads; gives its files with their bytes.

@@ -9,6 +9,7 @@ use bg_model::dynamics;
 use bg_model::input::Input;
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::sensitivity::Objective;
 use bg_workbench::calls::{self, Asked};
 use bg_workbench::machine::Machine;
 use bg_workbench::maker::Maker;
@@ -99,19 +100,11 @@ fn what_a_model_has_not_got_is_told_in_a_sentence() {
 }
 
 #[test]
-fn what_is_compiled_is_what_is_asked_for() {
-    let of = |maker: &dyn Maker| [maker.has_lanes(), maker.has_gradients()];
-    let plain = Compiled::<Slide>::new();
-    assert_eq!(
-        [of(&plain), of(&plain.lanes()), of(&Compiled::<Slide>::new().gradients())],
-        [[false; 2], [true, false], [false, true]]
-    );
-    let made = |maker: &dyn Maker| maker.make(1, &[2.0], &[]).unwrap();
+fn a_compiled_model_has_all_that_is_asked() {
+    let made = Compiled::<Slide>::new().make(1, &[2.0], &[]).unwrap();
     let accuracy = bg_model::extended::Accuracy { columns: 4, tolerance: 1e-12 };
     let request = bg_model::run::Request { t_end: 0.1, ..Default::default() };
-    let without = made(&Compiled::<Slide>::new().without_solutions());
-    assert!(without.solution(accuracy, &[0.0, 0.1]).is_none() && without.in_lanes(&request, &[vec![2.0]]).is_none());
-    let all = made(&Compiled::<Slide>::new().lanes());
-    assert!(all.solution(accuracy, &[0.0, 0.1]).is_some_and(|solution| solution.is_ok()));
-    assert_eq!(all.in_lanes(&request, &[vec![2.0], vec![3.0]]).map(|runs| runs.len()), Some(2));
+    assert!(made.solution(accuracy, &[0.0, 0.1]).is_some_and(|solution| solution.is_ok()));
+    assert_eq!(made.in_lanes(&request, &[vec![2.0], vec![3.0]]).map(|runs| runs.len()), Some(2));
+    assert!(made.gradient(&request, &Objective::last(0), &[]).is_some_and(|gradient| gradient.is_ok()));
 }

@@ -43,6 +43,7 @@ pub fn bonds(
 fn node(name: &Name, names: &BTreeMap<String, Entity>, faults: &mut Vec<Fault>) -> Option<NodeId> {
     match names.get(&name.text) {
         Some(Entity::Node(id)) => return Some(*id),
+        Some(Entity::Several) => {}
         Some(_) => faults.push(Fault::new(name.span, &GraphFault::NotANode { name: name.text.clone() })),
         None => {
             let nodes = names.iter().filter(|(_, entity)| matches!(entity, Entity::Node(_)));

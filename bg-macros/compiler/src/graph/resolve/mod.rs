@@ -34,6 +34,8 @@ pub enum Entity {
     Node(NodeId),
     /// A position or orientation.
     Track(usize),
+    /// Several of these, which is a fault: what uses the name is none.
+    Several,
 }
 
 /// Resolves one graph of bond-graph words.
@@ -138,11 +140,12 @@ impl Resolver {
         self.faults.push(Fault::new(span, fault));
     }
 
-    fn name(&mut self, name: &Name, entity: Entity) {
+    fn name(&mut self, name: &Name, mut entity: Entity) {
         if name.text == "t" {
             self.fault(name.span, &GraphFault::Reserved { name: name.text.clone() });
         } else if let Some(&first) = self.declared.get(&name.text) {
             self.fault(name.span, &DeclaredTwice::new(&name.text, name.span, first));
+            entity = Entity::Several;
         } else {
             self.declared.insert(name.text.clone(), name.span);
         }
@@ -512,8 +515,13 @@ impl Resolver {
             let whole = Term { kind: TermKind::Reference(reference), span };
             return Term { kind: TermKind::Component(Box::new(whole), component), span };
         }
-        let near = near_miss(name, self.names.keys().map(String::as_str)).map(str::to_owned);
-        self.fault(span, &GraphFault::UnknownName { name: name.to_owned(), near });
+        let owner = name.rsplit_once('.').map_or(name, |(owner, _)| owner);
+        if let Some(Entity::Node(_)) = self.names.get(name) {
+            self.fault(span, &GraphFault::NotAValue { name: name.to_owned() });
+        } else if ![name, owner].iter().any(|name| self.names.get(*name) == Some(&Entity::Several)) {
+            let near = near_miss(name, self.names.keys().map(String::as_str)).map(str::to_owned);
+            self.fault(span, &GraphFault::UnknownName { name: name.to_owned(), near });
+        }
         Term { kind: TermKind::Number(0.0), span }
     }
 
@@ -535,7 +543,7 @@ impl Resolver {
             Some(Entity::Input(index)) => return Some(Reference::Input(*index)),
             Some(Entity::Let(index)) => return Some(Reference::Let(*index)),
             Some(Entity::Track(index)) => return Some(Reference::Track(*index)),
-            Some(Entity::Node(_)) | None => {}
+            Some(Entity::Node(_) | Entity::Several) | None => {}
         }
         let (whole, property) = name.rsplit_once('.')?;
         let Some(Entity::Node(node)) = self.names.get(whole) else { return None };

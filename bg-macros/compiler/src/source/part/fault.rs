@@ -7,6 +7,7 @@ use crate::fault::Explain;
 #[expect(missing_docs, reason = "each variant's message says what it and its fields are")]
 pub enum PartFault {
     UnknownPart { name: String, near: Option<String> },
+    OfRust { name: String },
     UnknownParameter { part: String, name: String, near: Option<String> },
     GivenInside { part: String, name: String },
     ContainsItself { circle: Vec<String> },
@@ -24,6 +25,7 @@ pub enum PartFault {
     StartTwice { body: String, clause: &'static str },
     NothingToWatch { name: String, near: Option<String> },
     WatchesNothing { part: String },
+    Large { of: String, most: usize },
 }
 
 use PartFault as F;
@@ -31,7 +33,7 @@ use PartFault as F;
 impl Explain for PartFault {
     fn code(&self) -> &'static str {
         match self {
-            F::UnknownPart { .. } => "BG0801",
+            F::UnknownPart { .. } | F::OfRust { .. } => "BG0801",
             F::UnknownParameter { .. } | F::GivenInside { .. } => "BG0802",
             F::ContainsItself { .. } => "BG0803",
             F::PortWithoutBond { .. } => "BG0804",
@@ -44,12 +46,14 @@ impl Explain for PartFault {
             F::NothingToStart { .. } => "BG0812",
             F::StartTwice { .. } => "BG0813",
             F::NothingToWatch { .. } | F::WatchesNothing { .. } => "BG0814",
+            F::Large { .. } => "BG0815",
         }
     }
 
     fn message(&self) -> String {
         match self {
             F::UnknownPart { name, .. } => format!("there is no part `{name}`"),
+            F::OfRust { name } => format!("the part `{name}` stands in no file here"),
             F::UnknownParameter { part, name, .. } => format!("part `{part}` has no parameter or input `{name}`"),
             F::GivenInside { part, name } => format!("part `{part}` gives `{name}` a value itself"),
             F::ContainsItself { circle } => format!("part `{}` contains itself: {}", circle[0], circle.join(" -> ")),
@@ -72,6 +76,9 @@ impl Explain for PartFault {
             F::StartTwice { body, clause } => format!("`start {clause}` of `{body}` is given twice"),
             F::NothingToWatch { name, .. } => format!("nothing is called `{name}`"),
             F::WatchesNothing { part } => format!("part `{part}` has no `observe`, so that there is nothing to watch"),
+            F::Large { of, most } => {
+                format!("{of} has more than {most} statements, with its repetitions and parts written out")
+            }
         }
     }
 
@@ -82,6 +89,7 @@ impl Explain for PartFault {
             | F::NothingToStart { near: Some(near), .. }
             | F::NothingToWatch { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownPart { name, .. } if name.contains("::") => "write the path of a `pub part`".to_owned(),
+            F::OfRust { .. } => "write the part into a file: a text cannot use parts of a Rust crate".to_owned(),
             F::UnknownPart { name, .. } => {
                 format!("declare `part {name} {{ ... }}`, or write the path of a part of elsewhere, `self::{name}`")
             }
@@ -103,6 +111,7 @@ impl Explain for PartFault {
             F::NothingToStart { .. } => "write the path of a body, or of a point of it".to_owned(),
             F::StartTwice { .. } => "remove one of the two".to_owned(),
             F::NothingToWatch { .. } => "write the path of a part, body, joint or element".to_owned(),
+            F::Large { .. } => "make it smaller; `bond` has an option for more, `--limit-statements`".to_owned(),
             F::WatchesNothing { .. } => "name what to watch, or give the part an `observe { ... }`".to_owned(),
         }
     }

@@ -21,8 +21,8 @@ mod tests;
 
 use std::collections::BTreeMap;
 
-use crate::fault::{Fault, Faults, Staged, near_miss};
-use crate::source::ast::{Graph, Item, Part, PartPath, Source, Use, used_parts};
+use crate::fault::{DeclaredTwice, Explain, Fault, Faults, Staged, near_miss};
+use crate::source::ast::{Graph, Item, MOST_STATEMENTS, Name, Part, PartPath, Source, Use, used_parts};
 use flat::{Flat, Placed};
 use level::Level;
 
@@ -53,7 +53,7 @@ impl Flattened {
 ///
 /// # Errors
 /// Unknown parts and parameters, parts that contain themselves, ports without bonds, elements that an array does not
-/// have.
+/// have, more statements than [`Source::most`].
 pub fn flatten(source: &Source) -> Staged<Flattened> {
     let (flattened, faults) = flatten_leniently(source);
     if faults.is_empty() { Ok(flattened) } else { Err(flattened.told(faults)) }
@@ -62,17 +62,20 @@ pub fn flatten(source: &Source) -> Staged<Flattened> {
 /// What could be written out, and the faults.
 #[must_use]
 pub fn flatten_leniently(source: &Source) -> (Flattened, Faults) {
-    let mut stage = Flattening::default();
+    let mut stage = Flattening { most: source.most.unwrap_or(MOST_STATEMENTS), ..Flattening::default() };
     let mut flattened = Flattened::default();
     let call = Scope { key: String::new(), source };
     for graph in &source.graphs {
-        let of = format!("graph `{}`", graph.name.text);
-        let Flat { items, uses, unused, .. } = stage.level(&call, &graph.items, &of, false);
+        let Flat { items, uses, unused, .. } = stage.level(&call, &graph.items, &graph.name, false);
         flattened.unused_parameters.extend(unused);
         flattened.source.graphs.push(Graph { items, ..graph.clone() });
         flattened.uses.extend(uses);
     }
-    for part in &source.parts {
+    for (place, part) in source.parts.iter().enumerate() {
+        if let Some(first) = source.parts[..place].iter().find(|known| known.name.text == part.name.text) {
+            let twice = DeclaredTwice::new(&part.name.text, part.name.span, first.name.span);
+            stage.faults.push(Fault::new(part.name.span, &twice));
+        }
         if stage.parts.contains_key(&call.key_of(part)) {
             continue;
         }
@@ -80,6 +83,10 @@ pub fn flatten_leniently(source: &Source) -> (Flattened, Faults) {
         flattened.uses.push(Placed::of(part));
         flattened.uses.extend(flat.uses.iter().cloned());
         flattened.unused.push(check::alone(part, flat));
+    }
+    // What has been cut off is missing elsewhere.
+    if stage.is_cut {
+        stage.faults.retain(|fault| fault.code == PartFault::Large { of: String::new(), most: 0 }.code());
     }
     (flattened, stage.faults)
 }
@@ -90,6 +97,12 @@ pub fn unasked(source: &Source) -> Option<&PartPath> {
     let lists = source.parts.iter().map(|part| &part.items).chain(source.graphs.iter().map(|graph| &graph.items));
     let is_unasked = |path: &&PartPath| source.foreign.iter().all(|known| known.path.text != path.name.text);
     lists.flat_map(|items| used_parts(items)).filter(|path| path.is_foreign()).find(is_unasked)
+}
+
+/// The fault of such a path where no macro can be asked.
+#[must_use]
+pub fn of_rust(path: &PartPath) -> Fault {
+    Fault::new(path.name.span, &PartFault::OfRust { name: path.name.text.clone() })
 }
 
 /// Where the name of a part means something: the call, or what another call has answered.
@@ -123,15 +136,33 @@ struct Flattening {
     /// The parts that are being written out, the outermost first.
     around: Vec<String>,
     faults: Faults,
+    /// The most statements of one of them, or of a graph.
+    most: usize,
+    /// Whether one has had more.
+    is_cut: bool,
 }
 
 impl Flattening {
-    /// The statements of a graph, or of a part, without parts.
-    fn level(&mut self, scope: &Scope, items: &[Item], of: &str, is_part: bool) -> Flat {
-        let items = repeat::unrolled(items, &mut self.faults);
-        let uses = items.iter().filter_map(|item| if let Item::Use(used) = item { Some(used) } else { None });
-        let inside = uses.map(|used| self.used(scope, used).unwrap_or_default()).collect();
-        Level::of(items, inside, &mut self.faults).finish(of, is_part)
+    /// The statements of a graph, or of a part, without parts. Of one that is too large there are none.
+    fn level(&mut self, scope: &Scope, items: &[Item], name: &Name, is_part: bool) -> Flat {
+        let of = format!("{} `{}`", if is_part { "part" } else { "graph" }, name.text);
+        let items = repeat::unrolled(items, self.most, &mut self.faults);
+        let mut count = items.len();
+        let mut inside = Vec::new();
+        for used in items.iter().filter_map(|item| if let Item::Use(used) = item { Some(used) } else { None }) {
+            if count > self.most {
+                break;
+            }
+            let flat = self.used(scope, used).unwrap_or_default();
+            count += flat.items.len();
+            inside.push(flat);
+        }
+        if count > self.most {
+            self.faults.push(Fault::new(name.span, &PartFault::Large { of, most: self.most }));
+            self.is_cut = true;
+            return Flat::default();
+        }
+        Level::of(items, inside, &mut self.faults).finish(&of, is_part)
     }
 
     /// A part, written out once.
@@ -141,7 +172,7 @@ impl Flattening {
             return flat.clone();
         }
         self.around.push(key.clone());
-        let flat = self.level(scope, &part.items, &format!("part `{}`", part.name.text), true);
+        let flat = self.level(scope, &part.items, &part.name, true);
         self.around.pop();
         self.parts.insert(key, flat.clone());
         flat

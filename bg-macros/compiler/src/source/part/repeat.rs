@@ -14,9 +14,9 @@ use crate::source::walk::{Met, each_name, walk};
 /// The most that one range repeats: far more than any array that compiles.
 const MOST: i64 = 10_000;
 
-/// The statements without repetitions.
-pub(super) fn unrolled(items: &[Item], faults: &mut Faults) -> Vec<Item> {
-    let mut writing = Writing { items: Vec::new(), indices: Vec::new(), faults };
+/// The statements without repetitions; of more than `most` the first ones, one more than that.
+pub(super) fn unrolled(items: &[Item], most: usize, faults: &mut Faults) -> Vec<Item> {
+    let mut writing = Writing { items: Vec::new(), indices: Vec::new(), most, faults };
     items.iter().for_each(|item| writing.item(item));
     writing.items
 }
@@ -25,12 +25,14 @@ struct Writing<'f> {
     items: Vec<Item>,
     /// The indices around the present statement.
     indices: Vec<(String, i64)>,
+    most: usize,
     faults: &'f mut Faults,
 }
 
 impl Writing<'_> {
     fn item(&mut self, item: &Item) {
         match item {
+            _ if self.items.len() > self.most => {}
             Item::For(repeated) => self.repeated(repeated),
             Item::Use(Use { count: Some((count, span)), .. }) => self.array(item, *count, *span),
             _ => self.statement(item.clone()),
@@ -47,10 +49,15 @@ impl Writing<'_> {
         if !self.fits(from, to, repeated.to.span) {
             return;
         }
+        let before = self.faults.len();
         for number in from..to {
             self.indices.push((name.text.clone(), number));
             repeated.items.iter().for_each(|item| self.item(item));
             self.indices.pop();
+            // One round has all faults there are, and all statements where there are none.
+            if self.faults.len() > before || self.items.len() > self.most || is_idle(&repeated.items) {
+                return;
+            }
         }
     }
 
@@ -62,6 +69,9 @@ impl Writing<'_> {
         }
         for number in 0..count {
             let Item::Use(mut used) = item.clone() else { return };
+            if self.items.len() > self.most {
+                return;
+            }
             used.count = None;
             used.name.iter_mut().for_each(|name| name.text += &format!("[{number}]"));
             self.statement(Item::Use(used));
@@ -114,6 +124,11 @@ impl Writing<'_> {
     fn fault(&mut self, span: Span, fault: &impl Explain) {
         self.faults.push(Fault::new(span, fault));
     }
+}
+
+/// Whether there is nothing to repeat.
+fn is_idle(items: &[Item]) -> bool {
+    items.iter().all(|item| matches!(item, Item::For(repeated) if is_idle(&repeated.items)))
 }
 
 /// Brings the numbers into a name.

@@ -393,3 +393,24 @@ fn what_nothing_in_a_graph_uses_is_told_where_nothing_else_is_wrong() {
     let found = faults(&format!("graph A {{ param force: N = 1; {REST} Se t = forec; t -> a; }}"));
     assert!(found.contains("BG0303") && !found.contains("BG0811"), "{found}");
 }
+
+/// Each part has ten of the one before: a billion statements.
+#[test]
+fn parts_in_parts_end() {
+    let part = |k: usize| format!("part P{k} {{ part p[10]: P{}; }}", k - 1);
+    let parts: String = (1..9).map(part).collect();
+    let text = format!("graph G {{ part p: P8; }} part P0 {{ let a = 1; }} {parts}");
+    let faults = flatten(&parsed(&text)).expect_err("too many");
+    let told: Vec<&str> = faults.iter().map(|fault| fault.message.as_str()).collect();
+    assert_eq!(told, ["part `P5` has more than 20000 statements, with its repetitions and parts written out"]);
+    // The limit can be another one, and what reaches it is none too many.
+    let text = "graph G { for i in 0..99 { let a[i] = 1; } part p: P; } part P { let b = 1; }";
+    let limited = |most| flatten(&Source { most: Some(most), ..parsed(text) });
+    assert!(limited(101).is_ok());
+    assert_eq!(limited(100).expect_err("one too many")[0].code, "BG0815");
+    assert_eq!(limited(50).expect_err("many too many").len(), 1);
+    // Nothing is repeated, or a fault, without end.
+    let nested = |inside: &str| format!("graph G {{ for i in 0..9999 {{ for j in 0..9999 {{ {inside} }} }} }}");
+    assert!(flatten(&parsed(&nested("for k in 0..9999 { }"))).is_ok());
+    assert_eq!(flatten(&parsed(&nested("for k in 3..1 { let a[k] = 1; }"))).expect_err("no range")[0].code, "BG0808");
+}

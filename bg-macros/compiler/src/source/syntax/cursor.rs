@@ -35,7 +35,7 @@ pub(super) struct Place {
 }
 
 /// The words of statements that end with their block.
-const BLOCKS: [&str; 17] = [
+pub const BLOCKS: [&str; 17] = [
     "graph", "observe", "scene", "ground", "body", "joint", "spring", "drive", "contact", "friction", "stop",
     "orifice", "tune", "without", "rigid", "part", "for",
 ];

@@ -147,6 +147,8 @@ pub enum SyntaxFault {
     Attribute,
     /// A macro call without a graph and without a part.
     NoGraph,
+    /// A file that is used by a macro call.
+    UseInCall,
 }
 
 impl Explain for SyntaxFault {
@@ -177,6 +179,7 @@ impl Explain for SyntaxFault {
             Self::MisplacedDocumentation => "BG0120",
             Self::Attribute => "BG0121",
             Self::NoGraph => "BG0122",
+            Self::UseInCall => "BG0123",
         }
     }
 
@@ -224,6 +227,7 @@ impl Explain for SyntaxFault {
             }
             Self::Attribute => "found an attribute, expected none: the language has no attributes".into(),
             Self::NoGraph => "found no graph and no part, expected at least one".into(),
+            Self::UseInCall => "found the use of a file in a macro call, expected it in a file".into(),
         }
     }
 
@@ -263,6 +267,9 @@ impl Explain for SyntaxFault {
             Self::MisplacedDocumentation => "write `//` instead of `///`".into(),
             Self::Attribute => "remove it".into(),
             Self::NoGraph => "write `graph NAME { ... }`".into(),
+            Self::UseInCall => {
+                "write `bond_graph!(file \"NAME.bond\")`, or the path of a part, such as `vehicles::Leg`".into()
+            }
         }
     }
 }

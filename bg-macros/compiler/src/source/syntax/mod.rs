@@ -18,6 +18,7 @@ mod cursor;
 mod documentation;
 mod expression;
 mod fault;
+pub mod files;
 mod friction;
 mod mechanism;
 mod part;
@@ -29,6 +30,7 @@ mod unit;
 #[cfg(test)]
 mod tests;
 
+pub use cursor::BLOCKS;
 pub use expression::{DEEPEST, MOST_NESTED};
 pub use fault::SyntaxFault;
 
@@ -67,7 +69,11 @@ fn declaration(call: &mut Cursor, source: &mut Source) -> Parsed<()> {
     if call.is("@") {
         return call.foreign(source);
     }
-    let docs = call.documentation().text;
+    let documentation = call.documentation();
+    if call.word() == Some("use") {
+        return call.used_file(&documentation);
+    }
+    let docs = documentation.text;
     let visibility = call.visibility()?;
     let is_private = matches!(visibility, syn::Visibility::Inherited);
     match call.word() {

@@ -7,6 +7,7 @@ use proc_macro2::{Delimiter, Ident, Punct, Spacing, Span, TokenStream, TokenTree
 use super::{
     SyntaxFault,
     cursor::{Cursor, Parsed, Place, Repetition, is_reserved},
+    documentation::Documentation,
     statement::{self, OPERATOR},
     token::{TokenKind, joined, tokens},
 };
@@ -45,6 +46,23 @@ impl Cursor<'_> {
         let head = [TokenTree::from(word), Ident::new(&name.text, name.span).into()];
         let written = Written(head.into_iter().chain(body.map(TokenTree::from)).collect());
         source.parts.push(Part { docs, visibility, name, items: statement::items(block), written });
+        Ok(())
+    }
+
+    /// `use "parts/shaft.bond";`, after its documentation: a fault of one kind or another, as [`files`](super::files)
+    /// has taken it out of a file.
+    pub fn used_file(&mut self, documentation: &Documentation) -> Parsed<()> {
+        if let Some(span) = documentation.span {
+            return Err(self.note(span, &SyntaxFault::MisplacedDocumentation));
+        }
+        let start = self.advance();
+        let is_path = matches!(self.peek(), Some(TokenKind::Literal(path)) if path.to_string().starts_with('"'));
+        if !is_path {
+            return Err(self.unexpected("a file in quotes, such as `\"parts/shaft.bond\"`"));
+        }
+        self.advance();
+        self.expect(";")?;
+        self.note(start, &SyntaxFault::UseInCall);
         Ok(())
     }
 

@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use super::Kind;
-use super::signals::Signals;
+use super::signals::{Open, Signals};
 use crate::expr::{Branch, Id, Pool, Symbol, derivative, substitute_switched};
 use crate::graph::units::Dimension;
 use crate::graph::{Axis, Direction, ElementKind, Held, JointId, NodeId};
@@ -229,7 +229,7 @@ impl Signals<'_> {
     }
 
     /// The gaps of residual sinks that belong to no joint to be closed.
-    pub(super) fn gaps_of_sinks(&mut self) -> Vec<(String, String, Vec<Id>)> {
+    pub(super) fn gaps_of_sinks(&mut self) -> Vec<Open> {
         let graph = self.graph;
         let mut gaps = Vec::new();
         for sink in self.elements(|kind| kind == ElementKind::RSe) {

@@ -12,7 +12,7 @@ use super::iteration::Loop;
 use super::memo::{Entry, Memo};
 use super::solving::Pivot;
 use super::unknowns::{Unknown, Unknowns};
-use super::{FallibleLaw, Gap, Holding, Impacts, Origin, Output, State, StateEquations, Switch, storage, text};
+use super::{FallibleLaw, Gap, Holding, Impacts, Kind, Origin, Output, State, StateEquations, Switch, storage, text};
 use crate::expr::{Id, Pool, Symbol, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::units::Dimension;
@@ -21,6 +21,7 @@ use crate::graph::{
 };
 use crate::system::Value;
 use crate::system::equations::solution::Solution;
+use crate::system::magnitude::magnitudes;
 
 /// The states of a storage.
 #[derive(Clone, Debug)]
@@ -30,6 +31,9 @@ pub(super) struct Place {
     /// Its components that are states, and the state of each: all, unless others determine some of them.
     pub components: Vec<(usize, usize)>,
 }
+
+/// The gap of a joint, with its unit and its components.
+pub(super) type Open = (String, String, Vec<Id>);
 
 /// The derivation in progress.
 pub(super) struct Signals<'a> {
@@ -134,7 +138,8 @@ impl<'a> Signals<'a> {
         let outputs = self.outputs();
         self.integral_rates();
         self.starts();
-        let (guesses, speeds, gaps) = (self.guesses(), self.speeds(), self.gaps());
+        let (guesses, speeds, open) = (self.guesses(), self.speeds(), self.open());
+        let gaps = self.gaps(&open);
         let holding = Holding { compliant: self.compliant_slips(&speeds), ..Holding::default() };
         let mut projections = self.projections();
         projections.extend(self.turn_projections());
@@ -145,6 +150,8 @@ impl<'a> Signals<'a> {
         }
         let mut requirements = self.requirements();
         requirements.decide(&self.graph.parameters)?;
+        let extents = extents(&mut requirements.pool, &open, &self.states);
+        requirements.extents = extents;
         let shown = self.shown(bonds);
         let mut equations = StateEquations {
             pool: self.pool,
@@ -421,18 +428,23 @@ impl<'a> Signals<'a> {
         substitute(&mut self.pool, of, &start)
     }
 
-    /// The gaps at t = 0, over parameters and unknowns.
-    fn gaps(&mut self) -> Vec<Gap> {
+    /// What is to be closed, over the states: joint, unit, components.
+    fn open(&mut self) -> Vec<Open> {
         let graph = self.graph;
-        let mut closed = Vec::new();
+        let mut open = Vec::new();
         for close in &graph.closes {
             let unit = if close.dimension == Dimension::NONE { "rad" } else { "m" };
-            closed.push((graph.joint(close.joint).to_owned(), unit.to_owned(), self.evaluate(&close.gap, None).0));
+            open.push((graph.joint(close.joint).to_owned(), unit.to_owned(), self.evaluate(&close.gap, None).0));
         }
-        closed.extend(self.gaps_of_sinks());
+        open.extend(self.gaps_of_sinks());
+        open
+    }
+
+    /// The same at t = 0, over parameters and unknowns.
+    fn gaps(&mut self, open: &[Open]) -> Vec<Gap> {
         let mut gaps = Vec::new();
-        for (joint, unit, values) in closed {
-            let values = self.at_start(&values);
+        for (joint, unit, values) in open {
+            let values = self.at_start(values);
             let components = if values.len() == 1 { &[""][..] } else { &["x", "y", "z"] };
             for (component, value) in components.iter().zip(values) {
                 gaps.push(Gap { joint: joint.clone(), component, unit: unit.clone(), value });
@@ -453,6 +465,24 @@ impl<'a> Signals<'a> {
         }
         projections
     }
+}
+
+/// The extent of the machine for each gap at t = 0, over parameters and unknowns: how large the parts are of which the
+/// gap consists, while the states are symbols, so that numbers do not cancel; of a length with all positions.
+fn extents(pool: &mut Pool, open: &[Open], states: &[State]) -> Vec<Id> {
+    let starts: Vec<Id> = states.iter().map(|state| state.start).collect();
+    let starts = magnitudes(pool, &starts);
+    let is_position = |state: &State| state.origin.kind() == Kind::Position;
+    let positions: Vec<Id> =
+        states.iter().zip(&starts).filter(|(state, _)| is_position(state)).map(|(_, &start)| start).collect();
+    let all = pool.sum(&positions);
+    let mut extents = Vec::new();
+    for (_, unit, values) in open {
+        let parts = magnitudes(pool, values);
+        let parts = substitute(pool, &parts, &|symbol| symbol.as_state().map(|state| starts[state]));
+        extents.extend(parts.into_iter().map(|part| if unit == "m" { pool.sum(&[part, all]) } else { part }));
+    }
+    extents
 }
 
 /// One Newton-Schulz step towards the nearest orthogonal matrix, R (3 - R^T R) / 2 (Higham 2008, eq. 8.20): of what it

@@ -59,13 +59,16 @@ pub struct Requirements {
     pub pool: Pool,
     /// What is asked, in the order in which it is checked.
     pub list: Vec<Requirement>,
+    /// For each gap of the assembly how large the machine is, in the gap's unit: what is to be closed is to be small
+    /// beside that.
+    pub extents: Vec<Id>,
 }
 
 impl Requirements {
     /// No requirement yet, over these expressions.
     #[must_use]
     pub fn over(pool: Pool) -> Self {
-        Self { pool, list: Vec::new() }
+        Self { pool, list: Vec::new(), extents: Vec::new() }
     }
 
     /// Asks of a value what is allowed for it. What depends on more than parameters and unknowns, or on comparisons, is
@@ -139,14 +142,14 @@ impl Requirements {
                 self.pool.number(parameter.default)
             });
         }
-        let values: Vec<Id> = self.list.iter().map(|requirement| requirement.value).collect();
+        let values = self.list.iter().map(|requirement| requirement.value);
+        let values: Vec<Id> = values.chain(self.extents.iter().copied()).collect();
         let folded = substitute(&mut self.pool, &values, &|symbol| match symbol {
             Symbol::Parameter(index) => images.get(index as usize).copied(),
             _ => None,
         });
-        for (requirement, value) in self.list.iter_mut().zip(folded) {
-            requirement.value = value;
-        }
+        let places = self.list.iter_mut().map(|requirement| &mut requirement.value).chain(&mut self.extents);
+        places.zip(folded).for_each(|(place, value)| *place = value);
     }
 
     /// The requirements for the start, where the unknowns of the assembly are known, or those that parameters decide.

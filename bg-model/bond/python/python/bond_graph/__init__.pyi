@@ -11,7 +11,7 @@ class FaultError(ValueError):
     """Faults of a text, each shown at its place."""
 
     faults: list[dict[str, Any]]
-    """Each a dict: line, column, code, message, help."""
+    """Each a dict: file, line, column, code, message, help."""
 
 class RunFailed(ValueError):
     """A run that stopped before its end."""
@@ -125,8 +125,12 @@ class Model:
     def read_sweep(self, folder: str | PathLike[str], *, trajectories: bool = False) -> Table:
         """The rows of a sweep's folder: one for each run, or with ``trajectories`` for each sample."""
 
-def load(path: str | PathLike[str], *, graph: str | None = None) -> Model:
-    """The model of a file: a text with graphs, a Rust file with calls of ``bond_graph!``, a robot in URDF or MJCF."""
+def load(path: str | PathLike[str], *, graph: str | None = None, limit_statements: int | None = None) -> Model:
+    """The model of a file: a text with graphs, a Rust file with calls of ``bond_graph!``, a robot in URDF or MJCF.
 
-def compile(text: str, *, graph: str | None = None) -> Model:
-    """The model of a text."""
+    ``limit_statements`` is the most that a graph may have with its repetitions and parts written out, 20000 unless said."""
+
+def compile(
+    text: str, *, graph: str | None = None, folder: str | PathLike[str] = "", limit_statements: int | None = None
+) -> Model:
+    """The model of a text. Files that it uses are sought in ``folder``, the working folder unless said."""

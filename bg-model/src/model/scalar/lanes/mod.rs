@@ -10,8 +10,6 @@ use std::cmp::Ordering;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use nalgebra::SVector;
-
 use pulp::NullaryFnOnce;
 
 use super::slopes::Slopes;
@@ -89,14 +87,6 @@ pub fn take<V: Vector>(place: usize, of: &[Lanes<V>], to: &mut [f64]) {
     for (to, of) in to.iter_mut().zip(of) {
         *to = *of.0.at(place);
     }
-}
-
-/// The numbers of all states at a place.
-#[inline]
-pub fn at<V: Vector, const N: usize>(place: usize, of: &[Lanes<V>]) -> SVector<f64, N> {
-    let mut numbers = SVector::<f64, N>::zeros();
-    take(place, of, numbers.as_mut_slice());
-    numbers
 }
 
 /// Puts numbers of all states at a place.
@@ -508,7 +498,9 @@ mod tests {
                 assert_eq!(V::bits(V::mask(bits)), bits);
             }
             for lane in 0..V::LANES {
-                assert!(same(at::<V, 2>(lane, &[b, a])[1], a.get(lane)));
+                let mut both = [0.0; 2];
+                take(lane, &[b, a], &mut both);
+                assert!(same(both[1], a.get(lane)));
             }
         }
         let (x, y) = (Lanes::<V>::each(|lane| 0.3 + 0.1 * lane as f64), Lanes::each(|lane| 0.9 - 0.1 * lane as f64));

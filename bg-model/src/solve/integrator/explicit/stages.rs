@@ -102,30 +102,47 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
         completed: &mut impl Complete<S>,
     ) {
         self.start.copy_from_slice(from.x);
-        let Self { k, x, rate, start, .. } = self;
         for stage in stages {
-            macro_rules! written_out {
-                ($($stage:literal)*) => {
-                    match stage {
-                        $( $stage if $stage < T::A.len() => {
-                            for (first, k) in k.groups() {
-                                let (from_start, mut to) = (start.group(*first), combined(k, T::A[$stage]));
-                                for i in 0..W {
-                                    to[i] = from_start[i] + from.h * to[i];
-                                }
-                                x.set_group(*first, to);
-                            }
-                        } )*
-                        _ => unreachable!("a tableau has fewer stages than there is room for"),
-                    }
-                };
-            }
-            written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
-            completed.complete(stage, x);
+            self.move_to(stage, from.h);
+            completed.complete(stage, &mut self.x);
             let t = from.t + from.h.times(T::C[stage]);
-            rates.inlined_rate(t, x, rate);
-            k.set_row(stage, rate);
+            rates.inlined_rate(t, &self.x, &mut self.rate);
+            self.k.set_row(stage, &self.rate);
         }
+    }
+
+    /// The state of a stage of the last step, of size `h`.
+    #[cfg(feature = "std")]
+    #[inline(always)]
+    pub fn state(&mut self, stage: usize, h: S) -> &[S] {
+        if stage == 0 {
+            return &self.start;
+        }
+        self.move_to(stage, h);
+        &self.x
+    }
+
+    /// Moves the state on from the start to a stage that comes after it.
+    #[inline(always)]
+    fn move_to(&mut self, stage: usize, h: S) {
+        let Self { k, x, start, .. } = self;
+        macro_rules! written_out {
+            ($($stage:literal)*) => {
+                match stage {
+                    $( $stage if $stage < T::A.len() => {
+                        for (first, k) in k.groups() {
+                            let (from_start, mut to) = (start.group(*first), combined(k, T::A[$stage]));
+                            for i in 0..W {
+                                to[i] = from_start[i] + h * to[i];
+                            }
+                            x.set_group(*first, to);
+                        }
+                    } )*
+                    _ => unreachable!("a tableau has fewer stages than there is room for"),
+                }
+            };
+        }
+        written_out!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
     }
 
     /// The rates at the start of a step.

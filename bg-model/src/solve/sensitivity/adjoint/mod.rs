@@ -1,6 +1,6 @@
 //! The gradient of one number that a run gives by many parameters at once.
 //!
-//! In: a [`Mechanism`], what is asked of a run, an [`Objective`], directions. Out: the run, the number and its
+//! In: a model, what is asked of a run, an [`Objective`], directions. Out: the run, the number and its
 //! derivative along each direction. Method: the run is made as without derivatives, and recorded; then it is followed
 //! backwards, step by step, event by event, with how the objective depends on the state there. Each piece is the
 //! transposed one of what slopes do that follow a run ([`sensitivities`](super::sensitivities)), so that both agree to
@@ -13,20 +13,14 @@ mod lifted;
 mod objective;
 mod record;
 
-use nalgebra::SVector;
-
 use super::{Direction, SensitivityError};
-use crate::model::capability::Reversed;
 use crate::model::description::Description;
-use crate::model::dynamics::shared;
-use crate::model::mechanism::{LiftedVisitor, Mechanism};
-use crate::model::parameters::{ParameterError, Parameters};
-use crate::model::scalar::Gradient;
-use crate::model::system::{Model, switches, values};
+use crate::model::dynamics::Machine;
+use crate::model::mechanism::Reversible;
 use crate::solve::integrator::Scale;
 use crate::solve::run::{Request, Trajectory, observed};
 use crate::solve::simulation;
-use back::{Back, Crossing};
+use back::{Back, Crossing, add, dot};
 use event::back_over;
 use lifted::{Lifted, weighted};
 pub use objective::{Measured, Objective};
@@ -84,8 +78,8 @@ pub struct Gradients {
 ///
 /// # Panics
 /// The objective names an output that there is none of.
-pub fn gradient<Me: Mechanism>(
-    model: &Me,
+pub fn gradient(
+    model: &dyn Reversible,
     request: &Request,
     objective: &Objective<'_>,
     directions: &[Direction],
@@ -100,8 +94,8 @@ pub fn gradient<Me: Mechanism>(
 ///
 /// # Panics
 /// As there.
-pub fn gradient_within<Me: Mechanism>(
-    model: &Me,
+pub fn gradient_within(
+    model: &dyn Reversible,
     request: &Request,
     objective: &Objective<'_>,
     directions: &[Direction],
@@ -111,67 +105,39 @@ pub fn gradient_within<Me: Mechanism>(
     if let Some(&(t, ..)) = instants.iter().find(|(t, ..)| !(0.0..=request.t_end).contains(t)) {
         return Err(SensitivityError::OutsideOfRun { t, t_end: request.t_end });
     }
+    let Description { name, .. } = model.description();
+    let Some(sweeps) = model.swept() else { return Err(SensitivityError::NoReverseSweep { model: name }) };
     let mut times: Vec<f64> = instants.iter().map(|&(t, ..)| t).collect();
     times.dedup();
     let request = Request { samples: simulation::Samples::At(times), ..request.clone() };
-    let values = model.parameters().values();
-    model.visit_lifted::<Gradient, Gradient, _>(Asked { request, objective, instants, directions, values, states })
-}
-
-/// What is done with the model.
-struct Asked<'a> {
-    request: Request,
-    objective: &'a Objective<'a>,
-    /// When its terms are evaluated.
-    instants: Vec<(f64, usize, usize)>,
-    directions: &'a [Direction],
-    values: Vec<f64>,
-    /// The most states that are kept.
-    states: usize,
-}
-
-impl LiftedVisitor<Gradient, Gradient> for Asked<'_> {
-    type Output = Result<Gradients, SensitivityError>;
-
-    fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
-        self,
-        model: &Mo,
-        _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
-        lifted: impl Fn(&[Gradient]) -> Result<Li, ParameterError>,
-        _: impl Fn(&[&Li], fn(&[Gradient]) -> Gradient) -> Ot,
-    ) -> Self::Output
-    where
-        Mo: Model<f64, N, G, M> + Clone + 'static,
-        Li: Model<Gradient, N, G, M>,
-        Ot: Model<Gradient, N, G, M>,
-    {
-        let Description { name, .. } = model.description();
-        let Some(sweeps) = model.reversed() else { return Err(SensitivityError::NoReverseSweep { model: name }) };
-        let start = model.start()?;
-        let mut at_samples = AtSamples { objective: self.objective, instants: &self.instants, given: 0, value: 0.0 };
-        let add = |t: f64, x: &SVector<f64, N>, negative: &[bool; G]| {
-            let mut outputs = SVector::<f64, M>::zeros();
-            model.outputs(t, x, negative, &mut outputs);
-            at_samples.add(t, outputs.as_slice())
-        };
-        let mut record = Record::new(Box::new(add), start, self.states);
-        let outcome = observed(&*shared(model.clone()), &self.request, &mut record);
-        if let Some(error) = record.error.take() {
-            return Err(error);
-        }
-        let trajectory = outcome?;
-        let of = |chunk: &[Direction]| Ok(lifted(&super::sloped(&self.values, chunk))?);
-        let lifted = Lifted::new(self.directions, of)?;
-        let scale = record.scale.clone().unwrap_or_else(|| Scale::new(&self.request.tolerances(), N));
-        let back = Back::new((model, sweeps, lifted), scale, &self.objective.integrals);
-        let mut backwards = Backwards { back, record: &record, model, weights: SVector::zeros() };
-        backwards.back_to_start()?;
-        backwards.by_parameters(self.directions)?;
-        let (integral, by) = (backwards.back.integral, backwards.back.lifted.by);
-        drop(record);
-        let value = at_samples.value + integral;
-        Ok(Gradients { trajectory, value, directions: self.directions.to_vec(), by })
+    let (machine, values) = (model.machine(), model.values());
+    let mut at_samples = AtSamples { objective, instants: &instants, given: 0, value: 0.0 };
+    let add = |t: f64, x: &[f64], negative: &[bool]| at_samples.add(t, &outputs(&*machine, t, x, negative));
+    let mut record = Record::new(Box::new(add), machine.start()?, states);
+    let outcome = observed(&*machine, &request, &mut record);
+    if let Some(error) = record.error.take() {
+        return Err(error);
     }
+    let trajectory = outcome?;
+    let of = |chunk: &[Direction]| Ok(model.lifted(&super::sloped(&values, chunk))?);
+    let lifted = Lifted::new(directions, of)?;
+    let scale = record.scale.clone().unwrap_or_else(|| Scale::new(&request.tolerances(), machine.states()));
+    let back = Back::new((&*machine, &*sweeps, lifted), scale, &objective.integrals);
+    let weights = vec![0.0; machine.states()];
+    let mut backwards = Backwards { back, record: &record, model: &*machine, weights };
+    backwards.back_to_start()?;
+    backwards.by_parameters(directions)?;
+    let (integral, by) = (backwards.back.integral, backwards.back.lifted.by);
+    drop(record);
+    let value = at_samples.value + integral;
+    Ok(Gradients { trajectory, value, directions: directions.to_vec(), by })
+}
+
+/// The outputs at time `t` (s) and state `x`.
+fn outputs(model: &dyn Machine, t: f64, x: &[f64], negative: &[bool]) -> Vec<f64> {
+    let mut outputs = vec![0.0; model.description().outputs.len()];
+    model.outputs(t, x, negative, &mut outputs);
+    outputs
 }
 
 /// The terms of an objective while the run is made.
@@ -201,20 +167,15 @@ impl AtSamples<'_> {
 }
 
 /// A recorded run that is followed backwards.
-struct Backwards<'a, Mo, Re, Li, const N: usize, const G: usize, const M: usize> {
-    model: &'a Mo,
-    record: &'a Record<'a, N, G>,
-    back: Back<'a, Mo, Re, Li, N, M>,
+struct Backwards<'a> {
+    model: &'a dyn Machine,
+    record: &'a Record<'a>,
+    back: Back<'a>,
     /// How the objective depends on the state where this has come to.
-    weights: SVector<f64, N>,
+    weights: Vec<f64>,
 }
 
-impl<Mo, Re, Li, const N: usize, const G: usize, const M: usize> Backwards<'_, Mo, Re, Li, N, G, M>
-where
-    Mo: Model<f64, N, G, M>,
-    Re: Reversed<f64, N, G, M>,
-    Li: Model<Gradient, N, G, M>,
-{
+impl Backwards<'_> {
     /// Follows the run from its end to its start.
     fn back_to_start(&mut self) -> Result<(), SensitivityError> {
         let Record { states, stride, steps, events, samples, .. } = self.record;
@@ -227,34 +188,30 @@ where
                     self.over(happened)?;
                     events = before;
                 }
-                let mut inside = SVector::zeros();
+                let mut inside = vec![0.0; x.len()];
                 while let Some((sample, before)) = last_after(samples, number, |sample| sample.steps) {
                     self.sampled(sample, number, x, &mut inside)?;
                     samples = before;
                 }
                 self.back_along(number, x)?;
-                self.weights += inside;
+                add(&mut self.weights, &inside);
             }
         }
         for sample in samples {
             let weights = self.by_outputs(sample);
-            self.weights += weights;
+            add(&mut self.weights, &weights);
         }
         Ok(())
     }
 
     /// The start states of some steps, from that of the first: made again where there are several.
-    fn again(
-        &mut self,
-        numbers: std::ops::Range<usize>,
-        state: &SVector<f64, N>,
-    ) -> Result<Vec<SVector<f64, N>>, SensitivityError> {
-        let mut starts = vec![*state];
+    fn again(&mut self, numbers: std::ops::Range<usize>, state: &[f64]) -> Result<Vec<Vec<f64>>, SensitivityError> {
+        let mut starts = vec![state.to_vec()];
         for number in numbers.start..numbers.end - 1 {
             let events = &self.record.events;
             let happened = events[..events.partition_point(|happened| happened.steps <= number + 1)].last();
             let next = match happened.filter(|happened| happened.steps == number + 1) {
-                Some(Happened { switching, .. }) => *values(switching.after.x.as_slice()),
+                Some(Happened { switching, .. }) => switching.after.x.as_slice().to_vec(),
                 None => {
                     let (Step { from, to, branches }, x) = (self.record.steps[number], &starts[starts.len() - 1]);
                     let negative = &self.record.branches[branches as usize];
@@ -268,7 +225,7 @@ where
     }
 
     /// Follows a step from its end to its start `x`.
-    fn back_along(&mut self, number: usize, x: &SVector<f64, N>) -> Result<(), SensitivityError> {
+    fn back_along(&mut self, number: usize, x: &[f64]) -> Result<(), SensitivityError> {
         let record = self.record;
         let Step { from, to, branches } = record.steps[number];
         let crossing = Crossing { from, to, negative: &record.branches[branches as usize], x };
@@ -280,43 +237,40 @@ where
     /// that state, or to the weights at the end.
     fn sampled(
         &mut self,
-        sample: &Sample<N>,
+        sample: &Sample,
         number: usize,
-        x: &SVector<f64, N>,
-        inside: &mut SVector<f64, N>,
+        x: &[f64],
+        inside: &mut [f64],
     ) -> Result<(), SensitivityError> {
         let record = self.record;
         let Step { from, to, branches } = record.steps[number];
         let mut weights = self.by_outputs(sample);
         if sample.t == to {
-            self.weights += weights;
+            add(&mut self.weights, &weights);
             return Ok(());
         }
         let crossing = Crossing { from, to: sample.t, negative: &record.branches[branches as usize], x };
         if !self.back.follow(crossing, false, &mut weights) {
             return Err(SensitivityError::Inexact { t: from });
         }
-        *inside += weights;
+        add(inside, &weights);
         Ok(())
     }
 
     /// How the objective depends on the state at a sample.
-    fn by_outputs(&mut self, sample: &Sample<N>) -> SVector<f64, N> {
+    fn by_outputs(&mut self, sample: &Sample) -> Vec<f64> {
         let Sample { t, x, branches, weights, .. } = sample;
         let negative = &self.record.branches[*branches as usize];
-        self.back.by_outputs(*t, x, negative, &SVector::from_column_slice(weights))
+        self.back.by_outputs(*t, x, negative, weights)
     }
 
     /// Follows an event backwards.
     fn over(&mut self, happened: &Happened) -> Result<(), SensitivityError> {
         let event = &*happened.switching;
-        let gained = self.back.integrand.map_or(0.0, |factors| {
+        let gained = self.back.integrand.as_ref().map_or(0.0, |factors| {
             let ends = [(&event.before, &event.negative_before), (&event.after, &event.negative_after)];
-            let [before, after] = ends.map(|(point, negative)| {
-                let mut outputs = SVector::zeros();
-                self.model.outputs(point.t, values(point.x.as_slice()), switches(negative), &mut outputs);
-                factors.dot(&outputs)
-            });
+            let [before, after] =
+                ends.map(|(point, negative)| dot(factors, &outputs(self.model, point.t, point.x.as_slice(), negative)));
             before - after
         });
         back_over(&mut self.back.lifted, event, gained, &mut self.weights).ok_or_else(|| {
@@ -335,13 +289,10 @@ where
         }
         back.lifted.try_add_by_parameters(|system| {
             let start = system.start()?;
-            Ok::<_, SensitivityError>(weighted(start.as_slice(), weights.as_slice()))
+            Ok::<_, SensitivityError>(weighted(&start, weights))
         })?;
         let by_constants = &back.by_constants;
-        back.lifted.add_by_parameters(1.0, |system| {
-            let constants = system.reversed().map_or(&[][..], |sweeps| sweeps.constants());
-            weighted(constants, by_constants)
-        });
+        back.lifted.add_by_parameters(1.0, |system| weighted(system.constants(), by_constants));
         for (by, direction) in back.lifted.by.iter_mut().zip(directions) {
             if let Direction::Start(state) = direction {
                 *by += weights[*state];

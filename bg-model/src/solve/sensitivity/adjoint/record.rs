@@ -5,24 +5,20 @@
 //! every second one is forgotten, again and again, and the states between two that are left are made again. So a run of
 //! n steps takes 24 n bytes and a fixed number of states, beside its events and the samples that count.
 
-use nalgebra::SVector;
-
 use super::super::SensitivityError;
-use crate::model::system::{switches, values};
 use crate::solve::integrator::{Point, Scale};
 use crate::solve::simulation::{Observer, Switching};
 
 /// Is handed a sample: its time, s, its state and branches. Gives what counts of it: the derivatives of the objective
 /// by the outputs there. None where nothing counts.
-type Samples<'a, const N: usize, const G: usize> =
-    Box<dyn FnMut(f64, &SVector<f64, N>, &[bool; G]) -> Option<Vec<f64>> + 'a>;
+type Samples<'a> = Box<dyn FnMut(f64, &[f64], &[bool]) -> Option<Vec<f64>> + 'a>;
 
 /// A sample that counts.
-pub(super) struct Sample<const N: usize> {
+pub(super) struct Sample {
     /// The number of steps before its time, the one that it is in among them.
     pub steps: usize,
     pub t: f64,
-    pub x: SVector<f64, N>,
+    pub x: Vec<f64>,
     /// The branches, by their number.
     pub branches: u32,
     /// The derivatives of the objective by the outputs.
@@ -48,26 +44,26 @@ pub(super) struct Step {
 }
 
 /// A run as it was told.
-pub(super) struct Record<'a, const N: usize, const G: usize> {
-    samples_of: Samples<'a, N, G>,
+pub(super) struct Record<'a> {
+    samples_of: Samples<'a>,
     /// The model's own start.
-    start: SVector<f64, N>,
+    start: Vec<f64>,
     pub steps: Vec<Step>,
     /// The start states of the steps of these numbers: multiples of `stride`.
-    pub states: Vec<SVector<f64, N>>,
+    pub states: Vec<Vec<f64>>,
     pub stride: usize,
     most: usize,
-    pub branches: Vec<[bool; G]>,
+    pub branches: Vec<Vec<bool>>,
     pub events: Vec<Happened>,
-    pub samples: Vec<Sample<N>>,
+    pub samples: Vec<Sample>,
     /// What errors are measured by, at the end of the run.
     pub scale: Option<Scale>,
     pub error: Option<SensitivityError>,
 }
 
-impl<'a, const N: usize, const G: usize> Record<'a, N, G> {
+impl<'a> Record<'a> {
     /// Of a run from `start` that keeps `most` states at most.
-    pub fn new(samples_of: Samples<'a, N, G>, start: SVector<f64, N>, most: usize) -> Self {
+    pub fn new(samples_of: Samples<'a>, start: Vec<f64>, most: usize) -> Self {
         Self {
             samples_of,
             start,
@@ -84,20 +80,19 @@ impl<'a, const N: usize, const G: usize> Record<'a, N, G> {
     }
 
     /// The number of these branches, which are those of the last step as a rule.
-    fn number(&mut self, negative: &[bool; G]) -> u32 {
-        if self.branches.last() != Some(negative) {
-            self.branches.push(*negative);
+    fn number(&mut self, negative: &[bool]) -> u32 {
+        if self.branches.last().is_none_or(|last| last != negative) {
+            self.branches.push(negative.to_vec());
         }
         u32::try_from(self.branches.len() - 1).expect("fewer than 2^32 events")
     }
 }
 
-impl<const N: usize, const G: usize> Observer for Record<'_, N, G> {
+impl Observer for Record<'_> {
     fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
-        let (x, negative) = (values(x), switches(negative));
         if let Some(weights) = (self.samples_of)(t, x, negative) {
             let branches = self.number(negative);
-            self.samples.push(Sample { steps: self.steps.len(), t, x: *x, branches, weights });
+            self.samples.push(Sample { steps: self.steps.len(), t, x: x.to_vec(), branches, weights });
         }
     }
 
@@ -106,8 +101,8 @@ impl<const N: usize, const G: usize> Observer for Record<'_, N, G> {
     }
 
     fn passed(&mut self, start: &Point, end: &Point, negative: &[bool]) {
-        let x = values(start.x.as_slice());
-        if self.steps.is_empty() && *x != self.start {
+        let x = start.x.as_slice();
+        if self.steps.is_empty() && x != self.start {
             self.error = Some(SensitivityError::ImpactAtStart);
         }
         if self.steps.len().is_multiple_of(self.stride) {
@@ -120,10 +115,10 @@ impl<const N: usize, const G: usize> Observer for Record<'_, N, G> {
                 self.stride *= 2;
             }
             if self.steps.len().is_multiple_of(self.stride) {
-                self.states.push(*x);
+                self.states.push(x.to_vec());
             }
         }
-        let branches = self.number(switches(negative));
+        let branches = self.number(negative);
         self.steps.push(Step { from: start.t, to: end.t, branches });
     }
 
@@ -143,7 +138,7 @@ mod tests {
 
     #[test]
     fn of_a_long_run_every_so_many_states_are_kept() {
-        let mut record: Record<'_, 1, 0> = Record::new(Box::new(|_, _, _| None), SVector::zeros(), 6);
+        let mut record = Record::new(Box::new(|_, _, _| None), vec![0.0], 6);
         for step in 0..1000_u32 {
             let point = |at: u32| Point::at(f64::from(at), DVector::from_element(1, f64::from(at)));
             record.passed(&point(step), &point(step + 1), &[]);

@@ -3,15 +3,15 @@
 //! In: where each run stands, the step that it is to try. Out: where that leads, its error, whether it can be taken
 //! over without a closer look. Nothing of one place enters another.
 
-use nalgebra::{DVector, SVector};
+use nalgebra::DVector;
 use pulp::NullaryFnOnce;
 
 use super::controllers::{Control, Controllers, Judged, Lead};
 use super::{Judgement, Kept, Step};
+use crate::model::dynamics::Abreast;
 use crate::model::reactions::LoopsInLanes;
 use crate::model::scalar::Scalar;
-use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace, take};
-use crate::model::system::System;
+use crate::model::scalar::lanes::{Lanes, Vector, put, replace, take};
 use crate::solve::event::{Readings, Steps};
 use crate::solve::integrator::{AnyInLanes, Begin, OfOne, PointRef, Rates, Scale, Side};
 use crate::solve::statistics::Statistics;
@@ -20,21 +20,20 @@ use crate::solve::statistics::Statistics;
 const CERTAIN: f64 = 0.99;
 
 /// States of all runs.
-type States<V, const N: usize> = SVector<Lanes<V>, N>;
+type States<V> = Vec<Lanes<V>>;
 
 /// Runs side by side where they stand.
-#[derive(Debug)]
-pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
+pub(super) struct Group<V: Vector> {
     t: Lanes<V>,
     h: Lanes<V>,
     t_end: Lanes<V>,
     /// States and rates at the start and at the end of the steps.
-    start: [States<V, N>; 2],
-    end: [States<V, N>; 2],
+    start: [States<V>; 2],
+    end: [States<V>; 2],
     /// States at the end before they were projected, where joints may be rigid.
-    reached: States<V, N>,
-    negative: [V::Mask; G],
-    readings: Readings<V, G>,
+    reached: States<V>,
+    negative: Vec<V::Mask>,
+    readings: Readings<V>,
     method: AnyInLanes<V>,
     controllers: Controllers<V>,
     /// A bit for each run whose controller is among them.
@@ -44,7 +43,7 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     plain: u8,
     /// What errors are allowed, and the magnitudes and the step (s) from which on runs have outgrown their sizes.
     scale: Scale<Lanes<V>>,
-    limit: States<V, N>,
+    limit: States<V>,
     longest: Lanes<V>,
     /// The largest energies so far, J; zero where they are not known.
     energy: Lanes<V>,
@@ -59,6 +58,13 @@ pub(super) struct Group<V: Vector, const N: usize, const G: usize> {
     judged: Judged<V>,
 }
 
+/// The readings of the guards in a run's step: values and slopes (per s) at both ends, values in its middle.
+pub(super) struct Guards {
+    pub start: [Vec<f64>; 2],
+    pub end: [Vec<f64>; 2],
+    pub middle: Vec<f64>,
+}
+
 /// What has come of steps: a bit for each run.
 pub(super) struct Tried {
     /// It leads to finite states and rates, and is moved by the projection by no more than `moved`.
@@ -71,29 +77,30 @@ pub(super) struct Tried {
     pub refused: u8,
 }
 
-impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
-    /// Nobody yet; steps by `method` with the tolerances of this scale.
-    pub fn new(method: AnyInLanes<V>, control: Control, scale: &Scale) -> Self {
+impl<V: Vector> Group<V> {
+    /// Nobody yet, with room for so many states and switches; steps by `method` with the tolerances of this scale.
+    pub fn new(method: AnyInLanes<V>, control: Control, scale: &Scale, [states, switches]: [usize; 2]) -> Self {
         let zero = Lanes::from_f64(0.0);
         let &Scale { relative, coarsest, growth, .. } = scale;
         let lifted = |of: &[f64]| of.iter().map(|number| Lanes::from_f64(*number)).collect();
         let (absolute, weights) = (lifted(&scale.absolute), lifted(&scale.weights));
-        let none = [SVector::from([zero; N]); 2];
+        let filled = |number: f64| vec![Lanes::from_f64(number); states];
+        let none = || [filled(0.0), filled(0.0)];
         Self {
             t: zero,
             h: zero,
             t_end: zero,
-            start: none,
-            end: none,
-            reached: none[0],
-            negative: [false.into(); G],
-            readings: Readings::new(),
+            start: none(),
+            end: none(),
+            reached: filled(0.0),
+            negative: vec![false.into(); switches],
+            readings: Readings::new(switches, states),
             method,
             controllers: Controllers::new(control),
             led: 0,
             plain: 0,
             scale: Scale { relative, absolute, coarsest, growth, weights },
-            limit: SVector::repeat(Lanes::from_f64(f64::INFINITY)),
+            limit: filled(f64::INFINITY),
             longest: Lanes::from_f64(f64::INFINITY),
             energy: zero,
             loops: None,
@@ -105,11 +112,8 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     }
 
     /// The joints of the runs that are side by side now.
-    pub fn join<Sys>(&mut self, system: &Sys)
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
-        self.loops = system.joints().and_then(LoopsInLanes::new);
+    pub fn join(&mut self, system: &dyn Abreast<V>) {
+        self.loops = LoopsInLanes::new(system);
         self.whole = [0; 2];
     }
 
@@ -178,10 +182,10 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         self.whole[0] &= !bit;
         *self.t.0.at_mut(lane) = point.t;
         let [x, rate] = &mut self.start;
-        put(lane, x.as_mut_slice(), point.x);
-        put(lane, rate.as_mut_slice(), point.rate);
+        put(lane, x, point.x);
+        put(lane, rate, point.rate);
         for (to, from) in self.readings.start.iter_mut().zip(guards) {
-            put(lane, to.as_mut_slice(), from);
+            put(lane, to, from);
         }
     }
 
@@ -191,13 +195,14 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         *self.energy.0.at_mut(lane) = energy;
         put(lane, &mut self.scale.absolute, &scale.absolute);
         put(lane, &mut self.scale.weights, &scale.weights);
-        put(lane, self.limit.as_mut_slice(), limit.as_slice());
+        put(lane, &mut self.limit, limit.as_slice());
         *self.longest.0.at_mut(lane) = *longest;
     }
 
-    /// The state and the rate at the start of a run's step.
-    pub fn start(&self, lane: usize) -> [SVector<f64, N>; 2] {
-        self.start.each_ref().map(|states| at(lane, states.as_slice()))
+    /// Writes the state and the rate at the start of a run's step.
+    pub fn take_start(&self, lane: usize, x: &mut [f64], rate: &mut [f64]) {
+        take(lane, &self.start[0], x);
+        take(lane, &self.start[1], rate);
     }
 
     /// Writes what a run's method carries over from step to step into `to`.
@@ -215,48 +220,36 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
         self.method.hand_over(lane, method);
     }
 
-    /// The state at the end of a run's step before it was projected, where joints may be rigid.
-    pub fn reached(&self, lane: usize) -> SVector<f64, N> {
-        at(lane, self.reached.as_slice())
+    /// Writes the state at the end of a run's step before it was projected, where joints may be rigid.
+    pub fn take_reached(&self, lane: usize, x: &mut [f64]) {
+        take(lane, &self.reached, x);
     }
 
-    /// The state at the end of a run's step.
-    pub fn end(&self, lane: usize) -> SVector<f64, N> {
-        at(lane, self.end[0].as_slice())
+    /// Writes the state at the end of a run's step.
+    pub fn take_end(&self, lane: usize, x: &mut [f64]) {
+        take(lane, &self.end[0], x);
     }
 
-    /// The rate there.
-    pub fn rate(&self, lane: usize) -> SVector<f64, N> {
-        at(lane, self.end[1].as_slice())
+    /// Writes the rate there.
+    pub fn take_rate(&self, lane: usize, rate: &mut [f64]) {
+        take(lane, &self.end[1], rate);
     }
 
-    /// The readings of the guards at the end of a run's step: values, slopes (per s), values in its middle.
-    pub fn guards(&self, lane: usize) -> ([SVector<f64, G>; 2], SVector<f64, G>) {
-        (
-            self.readings.end.each_ref().map(|guards| at(lane, guards.as_slice())),
-            at(lane, self.readings.middle.as_slice()),
-        )
-    }
-
-    /// The readings of the guards at the start of a run's step: values, slopes (per s).
-    pub fn guards_at_start(&self, lane: usize) -> [SVector<f64, G>; 2] {
-        self.readings.start.each_ref().map(|guards| at(lane, guards.as_slice()))
+    /// The readings of the guards in a run's step.
+    pub fn guards(&self, lane: usize) -> Guards {
+        let Readings { start, end, middle, .. } = &self.readings;
+        let of = |guards: &Vec<Lanes<V>>| guards.iter().map(|guard| *guard.0.at(lane)).collect();
+        Guards { start: start.each_ref().map(of), end: end.each_ref().map(of), middle: of(middle) }
     }
 
     /// Iterates towards the fastest oscillations of the runs at the places of `due`; gives their stiffnesses.
-    pub fn follow<Sys>(&mut self, system: &Sys, due: u8) -> V::Numbers
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
+    pub fn follow(&mut self, system: &dyn Abreast<V>, due: u8) -> V::Numbers {
         V::vectorized(Following { group: self, system, due })
     }
 
     /// Tries the steps. Those of plain runs are judged: accepted where nothing happens in them, rejected where they err
     /// too much, both far from singular poses.
-    pub fn attempt<Sys>(&mut self, system: &Sys, moved: f64) -> Tried
-    where
-        Sys: System<Lanes<V>, N, G>,
-    {
+    pub fn attempt(&mut self, system: &dyn Abreast<V>, moved: f64) -> Tried {
         V::vectorized(Attempt { group: self, system, moved })
     }
 
@@ -266,31 +259,28 @@ impl<V: Vector, const N: usize, const G: usize> Group<V, N, G> {
     }
 }
 
-struct Following<'a, V: Vector, Sys, const N: usize, const G: usize> {
-    group: &'a mut Group<V, N, G>,
-    system: &'a Sys,
+struct Following<'a, V: Vector> {
+    group: &'a mut Group<V>,
+    system: &'a dyn Abreast<V>,
     due: u8,
 }
 
-impl<V: Vector, Sys, const N: usize, const G: usize> NullaryFnOnce for Following<'_, V, Sys, N, G>
-where
-    Sys: System<Lanes<V>, N, G>,
-{
+impl<V: Vector> NullaryFnOnce for Following<'_, V> {
     type Output = V::Numbers;
 
     #[inline(always)]
     fn call(self) -> V::Numbers {
         let Group { t, start: [x, rate], negative, method, scale, .. } = self.group;
         let side = Side { system: self.system, negative };
-        method.follow(&side, V::mask(self.due), (*t, x.as_slice(), rate.as_slice()), scale).0.numbers()
+        method.follow(&side, V::mask(self.due), (*t, x, rate), scale).0.numbers()
     }
 }
 
-struct Plan<'a, V: Vector, const N: usize, const G: usize> {
-    group: &'a mut Group<V, N, G>,
+struct Plan<'a, V: Vector> {
+    group: &'a mut Group<V>,
 }
 
-impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Plan<'_, V, N, G> {
+impl<V: Vector> NullaryFnOnce for Plan<'_, V> {
     type Output = u8;
 
     #[inline(always)]
@@ -303,16 +293,13 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Plan<'_, V, N,
     }
 }
 
-struct Attempt<'a, V: Vector, Sys, const N: usize, const G: usize> {
-    group: &'a mut Group<V, N, G>,
-    system: &'a Sys,
+struct Attempt<'a, V: Vector> {
+    group: &'a mut Group<V>,
+    system: &'a dyn Abreast<V>,
     moved: f64,
 }
 
-impl<V: Vector, Sys, const N: usize, const G: usize> NullaryFnOnce for Attempt<'_, V, Sys, N, G>
-where
-    Sys: System<Lanes<V>, N, G>,
-{
+impl<V: Vector> NullaryFnOnce for Attempt<'_, V> {
     type Output = Tried;
 
     #[inline(always)]
@@ -322,21 +309,20 @@ where
         let Group { method, scale, limit, longest, .. } = group;
         let (t, h, t_end) = (*t, *h, *t_end);
         let side = Side { system, negative };
-        let norm =
-            method.attempt(&side, &Begin { t, h, x: x.as_slice(), rate: rate.as_slice() }, scale, end.as_mut_slice());
+        let norm = method.attempt(&side, &Begin { t, h, x, rate }, scale, end);
         let mut fine = finite(end);
-        let has_joints = system.joints().is_some();
+        let has_joints = system.held().is_some();
         if has_joints {
-            *reached = *end;
+            reached.copy_from_slice(end);
         }
-        system.inlined_project(t_end, negative, end);
+        system.project(t_end, negative, end);
         if has_joints {
             fine &= near(reached, end, scale, CERTAIN * moved);
         }
-        side.rate(t_end, end.as_slice(), end_rate.as_mut_slice());
+        side.rate(t_end, end, end_rate);
         fine &= finite(end_rate);
         let steps = Steps { t, h, t_end, x: [x, end], rate: [rate, end_rate] };
-        let clear = if G == 0 { u8::MAX } else { V::bits(readings.read(&side, &steps)) };
+        let clear = if negative.is_empty() { u8::MAX } else { V::bits(readings.read(side, &steps)) };
         let Group { controllers, led, plain, reach, errors, judged, loops, whole, energy, .. } = group;
         let error = Lanes::select(V::below(norm.0, reach.0), *reach, norm);
         // Of the others it is a number of an ordinary size.
@@ -349,11 +335,11 @@ where
         let is_plain = fine & clear & keeps_size & !controllers.is_due(t_end);
         let mut accepted = *led & *plain & is_number & !is_large & is_plain;
         let mut refused = *led & *plain & is_number & is_large;
-        if let (Some(loops), Some(joints)) = (loops, system.joints()) {
+        if let Some(loops) = loops {
             // The ends of steps that may be accepted, then those of steps that err too much before they were projected.
             let mut ends = [0; 2];
             for (whole, x) in ends.iter_mut().zip([&*end, &*reached]) {
-                *whole = loops.whole(joints, (t_end, x), negative, *energy);
+                *whole = loops.whole(system, (t_end, x), negative, *energy);
                 if refused == 0 {
                     break;
                 }
@@ -369,10 +355,10 @@ where
 
 /// A bit for each run whose numbers are all finite.
 #[inline(always)]
-fn finite<V: Vector, const N: usize>(of: &States<V, N>) -> u8 {
+fn finite<V: Vector>(of: &[Lanes<V>]) -> u8 {
     // What is finite times 0 is 0; anything else times 0 is no number.
-    let mut sum = of.data.0[0][0].times(0.0);
-    for value in &of.data.0[0] {
+    let mut sum = of[0].times(0.0);
+    for value in of {
         sum = sum + value.times(0.0);
     }
     V::bits(V::below(sum.abs().0, sum.alike(1.0).0))
@@ -380,37 +366,31 @@ fn finite<V: Vector, const N: usize>(of: &States<V, N>) -> u8 {
 
 /// A bit for each run with a state of a larger magnitude than its limit.
 #[inline(always)]
-fn outgrown<V: Vector, const N: usize>(of: &States<V, N>, limit: &States<V, N>) -> u8 {
+fn outgrown<V: Vector>(of: &[Lanes<V>], limit: &[Lanes<V>]) -> u8 {
     let mut outgrown = 0;
-    for i in 0..N {
-        outgrown |= V::bits(V::below(limit.data.0[0][i].0, of.data.0[0][i].abs().0));
+    for (of, limit) in of.iter().zip(limit) {
+        outgrown |= V::bits(V::below(limit.0, of.abs().0));
     }
     outgrown
 }
 
 /// A bit for each run none of whose states is further from the one before than `most` of what is allowed there.
 #[inline(always)]
-fn near<V: Vector, const N: usize>(
-    before: &States<V, N>,
-    after: &States<V, N>,
-    scale: &Scale<Lanes<V>>,
-    most: f64,
-) -> u8 {
+fn near<V: Vector>(before: &[Lanes<V>], after: &[Lanes<V>], scale: &Scale<Lanes<V>>, most: f64) -> u8 {
     let mut near = u8::MAX;
-    for i in 0..N {
-        let (from, to) = (before.data.0[0][i], after.data.0[0][i]);
-        let allowed = scale.allowed(i, to).times(most);
-        near &= V::bits(V::below((to - from).abs().0, allowed.0));
+    for (i, (from, to)) in before.iter().zip(after).enumerate() {
+        let allowed = scale.allowed(i, *to).times(most);
+        near &= V::bits(V::below((*to - *from).abs().0, allowed.0));
     }
     near
 }
 
-struct Advance<'a, V: Vector, const N: usize, const G: usize> {
-    group: &'a mut Group<V, N, G>,
+struct Advance<'a, V: Vector> {
+    group: &'a mut Group<V>,
     accepted: u8,
 }
 
-impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Advance<'_, V, N, G> {
+impl<V: Vector> NullaryFnOnce for Advance<'_, V> {
     type Output = ();
 
     #[inline(always)]
@@ -420,8 +400,8 @@ impl<V: Vector, const N: usize, const G: usize> NullaryFnOnce for Advance<'_, V,
         let accepted = V::mask(self.accepted);
         *t = Lanes::select(accepted, *t_end, *t);
         for part in 0..2 {
-            replace(start[part].as_mut_slice(), accepted, end[part].as_slice());
-            replace(readings.start[part].as_mut_slice(), accepted, readings.end[part].as_slice());
+            replace(&mut start[part], accepted, &end[part]);
+            replace(&mut readings.start[part], accepted, &readings.end[part]);
         }
         method.advance(accepted);
     }

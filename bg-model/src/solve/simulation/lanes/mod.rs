@@ -10,24 +10,22 @@ mod group;
 
 use core::ops::Range;
 
-use nalgebra::{DVector, SVector};
+use nalgebra::DVector;
 
 use super::observer::Observer;
 use super::run::{Faulty, MOVED, Run};
 use super::settings::{self, Settings, Span};
 use super::step_size::{Judgement, Kept};
-use crate::model::capability::SecondOrder;
-use crate::model::dynamics::Machine;
+use crate::model::dynamics::{Abreast, Machine};
 use crate::model::scalar::lanes::{Lanes, Vector};
-use crate::model::system::System;
 use crate::solve::event::{Crossing, Found, Shortening};
 use crate::solve::finish::{Ended, Finish};
-use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, PointRef, Scale};
+use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, Scale};
 use crate::solve::simulation::Samples;
 use crate::solve::statistics::Statistics;
 use crate::solve::stepper::Stepper;
 use controllers::{Control, Lead};
-use group::{Group, Tried};
+use group::{Group, Guards, Tried};
 
 /// A run to be made.
 pub(crate) struct Job<'a, O> {
@@ -46,11 +44,7 @@ pub(crate) struct Job<'a, O> {
 }
 
 /// Whether runs of `model` over `span` can be made side by side with these settings.
-pub(crate) fn fits<const N: usize, const G: usize>(
-    model: &impl System<f64, N, G>,
-    span: Span,
-    settings: &Settings,
-) -> bool {
+pub(crate) fn fits(model: &dyn Machine, span: Span, settings: &Settings) -> bool {
     let each_step = settings.samples == Samples::Steps;
     let has_breaks = model.next_break(span.t0) < f64::INFINITY;
     model.runs_in_lanes() && !has_breaks && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
@@ -169,7 +163,7 @@ impl<'a, O: Observer> Lane<'a, O> {
     }
 
     /// The group's controller goes on from the run's.
-    fn lead<V: Vector, const N: usize, const G: usize>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+    fn lead<V: Vector>(&mut self, group: &mut Group<V>, place: usize) {
         let run = &self.run;
         let lead = Lead {
             controller: run.controller.kept(),
@@ -181,7 +175,7 @@ impl<'a, O: Observer> Lane<'a, O> {
     }
 
     /// The run's controller goes on from the group's.
-    fn follow<V: Vector, const N: usize, const G: usize>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+    fn follow<V: Vector>(&mut self, group: &mut Group<V>, place: usize) {
         let Some((controller, made, t)) = group.leave(place) else { return };
         let Statistics { steps, rejected, .. } = made;
         let rates = self.method().rates();
@@ -201,9 +195,9 @@ impl<'a, O: Observer> Lane<'a, O> {
 
     /// What an attempt leads to that the group has made; `is_fine` says whether it leads to finite numbers, `is_clear`
     /// whether the guards keep to their sides.
-    fn attempted<V: Vector, const N: usize, const G: usize>(
+    fn attempted<V: Vector>(
         &mut self,
-        group: &mut Group<V, N, G>,
+        group: &mut Group<V>,
         place: usize,
         attempted: Attempted,
         [is_fine, is_clear]: [bool; 2],
@@ -231,11 +225,10 @@ impl<'a, O: Observer> Lane<'a, O> {
         // Of a plain step the group alone keeps what the guards are.
         let is_quiet = !self.run.sampling.is_due(t)
             && (is_clear && self.run.monitor.is_plain() || {
-                let (end, middle) = group.guards(place);
+                let Guards { start, end, middle } = group.guards(place);
                 let Run { monitor, stepper, .. } = &mut self.run;
-                monitor.take_start(group.guards_at_start(place).each_ref().map(SVector::as_slice));
-                let end = end.each_ref().map(SVector::as_slice);
-                monitor.pass(&stepper.negative, end, middle.as_slice(), h, is_clear)
+                monitor.take_start(start.each_ref().map(Vec::as_slice));
+                monitor.pass(&stepper.negative, end.each_ref().map(Vec::as_slice), &middle, h, is_clear)
             });
         if !is_quiet {
             return self.inspected(group, place, attempted.step);
@@ -257,17 +250,12 @@ impl<'a, O: Observer> Lane<'a, O> {
     }
 
     /// Takes an attempt over that satisfies the tolerances, and looks for events in it.
-    fn inspected<V: Vector, const N: usize, const G: usize>(
-        &mut self,
-        group: &mut Group<V, N, G>,
-        place: usize,
-        Step { h, t, .. }: Step,
-    ) -> Outcome {
+    fn inspected<V: Vector>(&mut self, group: &mut Group<V>, place: usize, Step { h, t, .. }: Step) -> Outcome {
         self.take_start(group, place);
         group.hand_over(place, self.method());
-        let (x, rate) = (group.end(place), group.rate(place));
+        self.take_end(group, place, t);
         let run = &mut self.run;
-        run.stepper.take_over(h, PointRef { t, x: x.as_slice(), rate: rate.as_slice() });
+        run.stepper.arrived(h);
         let crossing = match run.monitor.look(&mut run.stepper) {
             Ok(None) => None,
             Ok(Some(Found::AtStart(crossing))) => Some(crossing),
@@ -290,21 +278,21 @@ impl<'a, O: Observer> Lane<'a, O> {
     }
 
     /// Looks at an attempt at the step that is being shortened.
-    fn shortened<V: Vector, const N: usize, const G: usize>(
-        &mut self,
-        group: &Group<V, N, G>,
-        place: usize,
-        Step { h, t, .. }: Step,
-    ) -> Outcome {
-        let x = group.end(place);
+    fn shortened<V: Vector>(&mut self, group: &Group<V>, place: usize, Step { h, t, .. }: Step) -> Outcome {
         self.run.stepper.statistics.rate_evaluations += self.method().rates();
         let Some(mut shortening) = self.shortening.take() else { return Outcome::Again };
-        let run = &mut self.run;
-        run.stepper.take_over(h, PointRef { t, x: x.as_slice(), rate: &[0.0; N] });
-        if run.stepper.system.held().is_some() {
-            let moved = run.stepper.moved(group.reached(place).as_slice(), x.as_slice());
-            run.stepper.settle_further(moved);
+        let stepper = &mut self.run.stepper;
+        stepper.end.t = t;
+        group.take_end(place, stepper.end.x.as_mut_slice());
+        stepper.end.rate.fill(0.0);
+        stepper.arrived(h);
+        if stepper.system.held().is_some() {
+            let mut reached = vec![0.0; stepper.end.x.len()];
+            group.take_reached(place, &mut reached);
+            let moved = stepper.moved(&reached, stepper.end.x.as_slice());
+            stepper.settle_further(moved);
         }
+        let run = &mut self.run;
         while !shortening.take(&run.monitor, &mut run.stepper) {
             if shortening.size() != h {
                 self.shortening = Some(shortening);
@@ -321,52 +309,43 @@ impl<'a, O: Observer> Lane<'a, O> {
     }
 
     /// Takes over from the group where the run stands.
-    fn take_start<V: Vector, const N: usize, const G: usize>(&mut self, group: &mut Group<V, N, G>, place: usize) {
+    fn take_start<V: Vector>(&mut self, group: &mut Group<V>, place: usize) {
         self.take_start_point(group, place);
-        self.run.monitor.take_start(group.guards_at_start(place).each_ref().map(SVector::as_slice));
+        self.run.monitor.take_start(group.guards(place).start.each_ref().map(Vec::as_slice));
         group.take_compensation(place, self.method().compensation());
     }
 
     /// Takes over the point from which the group's step starts.
-    fn take_start_point<V: Vector, const N: usize, const G: usize>(&mut self, group: &Group<V, N, G>, place: usize) {
-        let [x, rate] = group.start(place);
-        self.run.stepper.start.x.copy_from(&x);
-        self.run.stepper.start.rate.copy_from(&rate);
+    fn take_start_point<V: Vector>(&mut self, group: &Group<V>, place: usize) {
+        let Point { x, rate, .. } = &mut self.run.stepper.start;
+        group.take_start(place, x.as_mut_slice(), rate.as_mut_slice());
     }
 
     /// Takes over the end of the group's step, at `t` (s).
-    fn take_end<V: Vector, const N: usize, const G: usize>(&mut self, group: &Group<V, N, G>, place: usize, t: f64) {
-        let (x, rate) = (group.end(place), group.rate(place));
-        self.run.stepper.end.become_that(PointRef { t, x: x.as_slice(), rate: rate.as_slice() });
+    fn take_end<V: Vector>(&mut self, group: &Group<V>, place: usize, t: f64) {
+        let end = &mut self.run.stepper.end;
+        end.t = t;
+        group.take_end(place, end.x.as_mut_slice());
+        group.take_rate(place, end.rate.as_mut_slice());
     }
 
     /// Whether a step to `t` (s) begins or ends in the neighbourhood of a singular pose.
-    fn is_around_singular<V: Vector, const N: usize, const G: usize>(
-        &mut self,
-        group: &Group<V, N, G>,
-        place: usize,
-        t: f64,
-    ) -> bool {
+    fn is_around_singular<V: Vector>(&mut self, group: &Group<V>, place: usize, t: f64) -> bool {
         self.run.has_loops() && {
             self.take_start_point(group, place);
             let end = &mut self.run.stepper.end;
             end.t = t;
-            end.x.copy_from(&group.reached(place));
+            group.take_reached(place, end.x.as_mut_slice());
             self.run.is_around_singular()
         }
     }
 
     /// Whether joints that close loops say where the mechanism goes at the end of a step to `t` (s).
-    fn holds_together<V: Vector, const N: usize, const G: usize>(
-        &mut self,
-        group: &Group<V, N, G>,
-        place: usize,
-        t: f64,
-    ) -> bool {
+    fn holds_together<V: Vector>(&mut self, group: &Group<V>, place: usize, t: f64) -> bool {
         !self.run.has_loops() || {
             let end = &mut self.run.stepper.end;
             end.t = t;
-            end.x.copy_from(&group.end(place));
+            group.take_end(place, end.x.as_mut_slice());
             self.run.check_joints().is_ok()
         }
     }
@@ -375,23 +354,20 @@ impl<'a, O: Observer> Lane<'a, O> {
 /// Makes the `jobs`, whose methods are those of `method`; `lifted` makes a model of parameters side by side. `done` is
 /// told the number of each run with its observer, and where it has come to: nothing of one that is to be made by
 /// itself.
-pub(crate) fn integrate<'a, V, Li, O, const N: usize, const G: usize>(
+pub(crate) fn integrate<'a, V: Vector, O: Observer>(
     mut jobs: impl Iterator<Item = Job<'a, O>>,
     method: AnyInLanes<V>,
-    lifted: impl Fn(&[Lanes<V>]) -> Li,
+    lifted: impl Fn(&[Lanes<V>]) -> Box<dyn Abreast<V>>,
     span: Span,
     settings: &'a Settings,
+    sizes: [usize; 2],
     done: &mut dyn FnMut(usize, O, Option<Finish>),
-) where
-    V: Vector,
-    Li: System<Lanes<V>, N, G>,
-    O: Observer,
-{
-    let scale = Scale::new(&settings.tolerances, N);
+) {
+    let scale = Scale::new(&settings.tolerances, sizes[0]);
     let control = Control { span, largest: settings.largest_step, order: method.order() };
-    let mut group = Box::new(Group::<V, N, G>::new(method, control, &scale));
+    let mut group = Group::new(method, control, &scale, sizes);
     let mut lanes: Vec<Option<Lane<'a, O>>> = (0..V::LANES).map(|_| None).collect();
-    let mut system: Option<Li> = None;
+    let mut system: Option<Box<dyn Abreast<V>>> = None;
     loop {
         // Free places take the next runs.
         let mut is_new = false;
@@ -415,7 +391,7 @@ pub(crate) fn integrate<'a, V, Li, O, const N: usize, const G: usize>(
             let values = |lane: usize, k: usize| lanes[lane].as_ref().unwrap_or(any).values[k];
             let packed: Vec<Lanes<V>> = (0..any.values.len()).map(|k| Lanes::each(|lane| values(lane, k))).collect();
             let model = lifted(&packed);
-            group.join(&model);
+            group.join(&*model);
             for (place, lane) in occupied(&mut lanes).filter(|(_, lane)| lane.shortening.is_none()) {
                 lane.follow(&mut group, place);
                 lane.lead(&mut group, place);
@@ -423,7 +399,7 @@ pub(crate) fn integrate<'a, V, Li, O, const N: usize, const G: usize>(
             system = Some(model);
         }
         let Some(model) = &system else { return };
-        let finished = round(&mut group, &mut lanes, model);
+        let finished = round(&mut group, &mut lanes, &**model);
         for (place, slot) in lanes.iter_mut().enumerate() {
             let ended = finished & 1 << place != 0;
             let is_at_end = slot.as_ref().is_some_and(Lane::is_at_end);
@@ -449,17 +425,12 @@ fn finish(run: Run<'_>) -> Finish {
 }
 
 /// A step, or an attempt at one, of each run; gives a bit for each run that cannot go on in company.
-fn round<V, Li, O, const N: usize, const G: usize>(
-    group: &mut Group<V, N, G>,
+fn round<V: Vector, O: Observer>(
+    group: &mut Group<V>,
     lanes: &mut [Option<Lane<'_, O>>],
-    model: &Li,
-) -> u8
-where
-    V: Vector,
-    Li: System<Lanes<V>, N, G>,
-    O: Observer,
-{
-    let second = model.second_order().filter(|_| group.is_held()).map_or(0..0, |second| second.states());
+    model: &dyn Abreast<V>,
+) -> u8 {
+    let second = if group.is_held() { model.second() } else { 0..0 };
     let (mut due, mut failed) = (0_u8, 0_u8);
     for (place, lane) in occupied(lanes) {
         if second.is_empty() || !lane.method().is_due() {
@@ -534,11 +505,7 @@ fn occupied<T>(lanes: &mut [Option<T>]) -> impl Iterator<Item = (usize, &mut T)>
 }
 
 /// Takes a run over into the group.
-fn load<V, O, const N: usize, const G: usize>(group: &mut Group<V, N, G>, place: usize, lane: &mut Lane<'_, O>)
-where
-    V: Vector,
-    O: Observer,
-{
+fn load<V: Vector, O: Observer>(group: &mut Group<V>, place: usize, lane: &mut Lane<'_, O>) {
     let Run { stepper, monitor, .. } = &lane.run;
     group.load(place, stepper.start.borrowed(), &stepper.negative, monitor.at_start());
     group.set_compensation(place, lane.method().compensation());
@@ -546,10 +513,7 @@ where
 }
 
 /// Takes over what errors are allowed in a run.
-fn measure<V, const N: usize, const G: usize>(group: &mut Group<V, N, G>, place: usize, run: &Run<'_>)
-where
-    V: Vector,
-{
+fn measure<V: Vector>(group: &mut Group<V>, place: usize, run: &Run<'_>) {
     let energy = run.sizes.moved(run.stepper.system).energy.unwrap_or(0.0);
     group.measure(place, &run.stepper.scale, &run.sizes.limits(), energy);
 }

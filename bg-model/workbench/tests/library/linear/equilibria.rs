@@ -88,6 +88,20 @@ fn a_twist_that_is_a_state_is_the_turn_of_its_rod() {
 }
 
 #[test]
+fn a_machine_of_any_size_is_found_at_rest_from_its_origin_too() {
+    for size in [1e-12, 1e-6, 1.0, 1e6, 1e12] {
+        for at in [0.0, 1e-17, 0.3, 0.45] {
+            let (rest, linear) = at_rest::<Plates>(&model(&[("size", size), ("at", at)], &[]));
+            assert!(rest.steps < 100, "{} steps at {size} m from {at}", rest.steps);
+            // Of the roots of way (1 - way)^2 = 0.12 the smallest is the stable one.
+            let way = linear.point.iter().find(|state| state.name == "plate.position_x").unwrap().value / size;
+            near(way * (1.0 - way).powi(2), 0.12, 1e-12);
+            assert!(way < 1.0 / 3.0, "{way} at {size} m from {at}");
+        }
+    }
+}
+
+#[test]
 fn a_shaft_and_a_wheel_held_by_a_gear_share_the_torque() {
     let (_, linear) = at_rest::<Geared>(&model(&[], &[]));
     let value = |name: &str| linear.point.iter().find(|state| state.name == name).unwrap().value;

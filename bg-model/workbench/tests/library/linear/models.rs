@@ -25,6 +25,18 @@ bond_graph! {
         first -> rotor; first -> between -> second; between -> slip -> rub; second -> wheel; second -> brake;
         observe { w: rad/s = first.flow; u: rad/s = second.flow; rub.effort }
     }
+    /// A plate on a spring, drawn by another one at a distance of `size` by a force with a pole there.
+    pub graph Plates {
+        param size: m = 1, above 0;
+        param at: 1 = 0;
+        param stiffness: N/m = 3, above 0;
+        body plate { mass 1; inertia [1, 1, 1]; start at [at * size, 0, 0]; }
+        joint guide: prismatic x (ground -> plate) { rigid; }
+        R air = 0.2; guide.slide -> air;
+        let way: 1 = guide.travel / size;
+        drive draw on guide force = size * stiffness * (0.12 / ((1 - way) * (1 - way)) - way);
+        observe { way: 1 = way }
+    }
     /// A rod that swings about a pin.
     pub graph Rod {
         param angle: rad = 0.5;
