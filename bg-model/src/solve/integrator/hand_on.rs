@@ -36,8 +36,8 @@ macro_rules! hand_on {
             $present!((&) self, method => method.faulty_rate())
         }
 
-        fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>, scale: &Scale) {
-            $present!((&mut) self, method => method.prepare_dense(flow, start, h, end, scale));
+        fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+            $present!((&mut) self, method => method.prepare_dense(flow, start, h, end));
         }
 
         fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {

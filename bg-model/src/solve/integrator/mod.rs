@@ -213,10 +213,10 @@ pub trait Method {
     /// The first state whose rate was not finite in a stage of the last attempt, and that rate.
     fn faulty_rate(&self) -> Option<(usize, f64)>;
 
-    /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`], as exact
-    /// as `scale` asks. The rate at `end` is known. Further rates may be evaluated. Changes nothing in the steps that
-    /// follow. There may be nothing to prepare.
-    fn prepare_dense(&mut self, _flow: &Flow<'_>, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>, _scale: &Scale) {}
+    /// Makes the dense output of the last attempt, of size `h` (s) from `start`, ready for [`Method::dense`]. The rate
+    /// at `end` is known. Further rates may be evaluated. Changes nothing in the steps that follow. There may be
+    /// nothing to prepare.
+    fn prepare_dense(&mut self, _flow: &Flow<'_>, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {}
 
     /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
     fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]);

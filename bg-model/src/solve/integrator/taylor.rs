@@ -279,9 +279,9 @@ impl Method for Taylor {
         self.series.chunks_exact(n.max(1)).skip(1).find_map(first_not_finite)
     }
 
-    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>, scale: &Scale) {
+    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
         if self.is_by_other {
-            self.other.prepare_dense(flow, start, h, end, scale);
+            self.other.prepare_dense(flow, start, h, end);
         }
     }
 

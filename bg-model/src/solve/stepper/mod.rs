@@ -230,8 +230,8 @@ impl<'a> Stepper<'a> {
         if !self.dense_is_ready {
             let before = self.statistics.rate_evaluations;
             let h = self.h;
-            let (method, flow, start, end, scale) = self.split();
-            method.prepare_dense(&flow, start.borrowed(), h, end.borrowed(), scale);
+            let (method, flow, start, end, _) = self.split();
+            method.prepare_dense(&flow, start.borrowed(), h, end.borrowed());
             self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
             self.dense_is_ready = true;
         }

@@ -336,7 +336,7 @@ impl Auto {
         let mut x = core::mem::take(&mut self.end);
         let since = claim.t - before.t;
         present!((&mut) self, method => {
-            method.prepare_dense(flow, before.point(), step, start, scale);
+            method.prepare_dense(flow, before.point(), step, start);
             method.dense(before.point(), step, start, since / step, &mut x);
         });
         let agrees = scale.norm_of(&x, |i| self.claimed[i] - x[i]) <= AGREEMENT;

@@ -144,11 +144,6 @@ impl Tableau for DormandPrince {
 
     const SECOND: Row = &[(0, 0.2440944881889764), (8, 0.7338466882816118), (11, 0.022058823529411766)];
 
-    // On y' = z y / h the dense output errs by 27 to 100 times as much as it is off from this stage, for z from -12 to
-    // 3 and on the imaginary axis up to 5; beside the error estimate by 0.5 to 5 times that for z from -4 on and on
-    // that axis, but by 130 times at z = -5.5 and 350 times at -15.
-    const DENSE_ERROR: Option<(usize, f64)> = Some((14, 60.0));
-
     const DENSE: &'static [Row] = &[
         &[
             (0, -8.428938276109013),

@@ -20,7 +20,6 @@ mod transposed;
 mod vectors;
 
 use alloc::vec::Vec;
-use core::ops::Range;
 
 pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
@@ -32,7 +31,7 @@ use super::side_by_side::SIDE_BY_SIDE;
 use super::steps::Begin;
 use super::tolerances::{index_of_largest, largest_of, smaller};
 use super::vectors::{Vectorised, attempt_in};
-use super::{Arch, Flow, Method, PointRef, Scale, StepControl, is_finite};
+use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
 use crate::model::scalar::Scalar;
 #[cfg(feature = "std")]
 pub(super) use lanes::ExplicitInLanes;
@@ -49,8 +48,7 @@ pub type Bs5 = Explicit<BogackiShampine>;
 pub type Cfmr7 = Explicit<CalvoFrancoMontijanoRandez>;
 
 /// The method of order 8(5,3) of Dormand and Prince: twelve rates a step, three more if its dense output of order 7 is
-/// asked for, and 29 more where that errs by more than twenty times what a step may: that of the two halves of the step
-/// is taken then.
+/// asked for.
 pub type Dop853 = Explicit<DormandPrince>;
 
 /// The non-zero weights of a linear combination of stages: each with its stage, in ascending order.
@@ -84,9 +82,6 @@ pub trait Tableau {
     const IS_COMPENSATED: bool = false;
     /// The coefficients of the dense output from the fourth on: see `super::dense`.
     const DENSE: &'static [Row];
-    /// A stage of the dense output, and how many times its distance from that the output errs; none where the output is
-    /// as good as the ends of its step.
-    const DENSE_ERROR: Option<(usize, f64)> = None;
     /// What the coefficients of a diagonally implicit companion have more than [`Tableau::A`] below the diagonal,
     /// without those of the first stage; empty if there is none. It has the same state at the end of the step.
     const MORE: &'static [Row] = &[];
@@ -96,38 +91,13 @@ pub trait Tableau {
 
 /// The most coefficients of a dense output.
 const COEFFICIENTS: usize = 7;
-/// The most that a dense output may err by, in parts of what a step may.
-const DENSE_LIMIT: f64 = 20.0;
-/// From here on a step is so far beyond what is stable that two of its halves are worse, in the same parts.
-const DENSE_HOPELESS: f64 = 1e5;
-/// The places of the dense outputs of a step and of its halves.
-const WHOLE: usize = 0;
-const FIRST_HALF: usize = 1;
-const SECOND_HALF: usize = 2;
-
-/// A state on the way, with its rate.
-#[derive(Clone, Debug, Default)]
-struct Middle {
-    x: Vec<f64>,
-    rate: Vec<f64>,
-}
-
-impl Middle {
-    fn at(&self, t: f64) -> PointRef<'_> {
-        PointRef { t, x: &self.x, rate: &self.rate }
-    }
-}
 
 /// The explicit method of tableau `T`.
 #[derive(Clone, Debug)]
 pub struct Explicit<T> {
     pub(super) stages: Stages<T, f64, SIDE_BY_SIDE>,
-    /// The dense outputs' coefficients: of the whole step, of its halves.
-    polynomials: [Polynomial<COEFFICIENTS>; 3],
-    /// Where the second half begins.
-    middle: Middle,
-    /// Whether the dense output is of both halves.
-    is_halved: bool,
+    /// The dense output's coefficients.
+    polynomial: Polynomial<COEFFICIENTS>,
     /// What rounding has kept from the states.
     sum: CompensatedSum<f64, SIDE_BY_SIDE>,
     /// States at the end of a step, as they are and moved by a difference, after their projection; the latter is also
@@ -143,9 +113,7 @@ impl<T: Tableau> Explicit<T> {
     pub fn new() -> Self {
         Self {
             stages: Stages::new(0),
-            polynomials: core::array::from_fn(|_| Polynomial::new()),
-            middle: Middle::default(),
-            is_halved: false,
+            polynomial: Polynomial::new(),
             sum: CompensatedSum::new(0),
             projected: [const { Vec::new() }; 2],
             arch: Arch::new(),
@@ -165,60 +133,6 @@ impl<T: Tableau> Explicit<T> {
     #[inline(always)]
     pub(crate) fn stage(&mut self, stage: usize, h: f64) -> &[f64] {
         self.stages.state(stage, h)
-    }
-
-    /// Evaluates stages of a step of size `h` (s).
-    #[inline(never)]
-    fn evaluate(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, stages: Range<usize>) {
-        self.stages.evaluate(flow, &Begin::of(start, h), stages, &mut ());
-    }
-
-    /// Sets a polynomial to the dense output of the step whose stages are known up to its end.
-    fn interpolate(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>, index: usize) {
-        self.stages.set_stage(T::END, |rate| rate.copy_from_slice(end.rate));
-        self.evaluate(flow, start, h, T::END + 1..T::A.len());
-        let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
-        let Self { stages, polynomials, .. } = self;
-        polynomials[index].set(start, h, end, |m, _, out| stages.write(row(m), h, out));
-    }
-
-    /// What such a dense output errs by, in parts of what a step may; infinite where it is no number.
-    fn dense_error(&mut self, start: PointRef<'_>, h: f64, index: usize, allowed: &impl Fn(usize) -> f64) -> f64 {
-        let Some((stage, times)) = T::DENSE_ERROR else { return 0.0 };
-        let Self { stages, polynomials, projected: [there, _], arch, .. } = self;
-        polynomials[index].evaluate(*arch, FROM_ENDS + T::DENSE.len(), start, T::C[stage], there);
-        if !is_finite(there) {
-            return f64::INFINITY;
-        }
-        let off = |i: usize| (there[i] - (start.x[i] + h * stages.combine(T::A[stage], i))).abs();
-        times * largest_of(there.len(), |i| off(i) / allowed(i))
-    }
-
-    /// Sets the polynomials of the two halves of the step; gives what they err by.
-    fn halve(
-        &mut self,
-        flow: &Flow<'_>,
-        start: PointRef<'_>,
-        h: f64,
-        end: PointRef<'_>,
-        allowed: &impl Fn(usize) -> f64,
-    ) -> f64 {
-        let half = 0.5 * h;
-        self.stages.begin(start.rate);
-        self.evaluate(flow, start, half, 1..T::END);
-        let mut middle = core::mem::take(&mut self.middle);
-        self.stages.write(T::B, half, &mut middle.x);
-        middle.x.iter_mut().zip(start.x).for_each(|(x, start)| *x += start);
-        flow.rate(start.t + half, &middle.x, &mut middle.rate);
-        let there = middle.at(start.t + half);
-        self.interpolate(flow, start, half, there, FIRST_HALF);
-        let first = self.dense_error(start, half, FIRST_HALF, allowed);
-        self.stages.begin(there.rate);
-        self.evaluate(flow, there, half, 1..T::END);
-        self.interpolate(flow, there, half, end, SECOND_HALF);
-        let second = self.dense_error(there, half, SECOND_HALF, allowed);
-        self.middle = middle;
-        first + second
     }
 
     /// What is left of the end of a step less h times a difference after the projection, in parts of what is allowed.
@@ -278,9 +192,8 @@ impl<T: Tableau> Method for Explicit<T> {
     fn fit(&mut self, states: usize) {
         if self.stages.states() != states {
             (self.stages, self.sum) = (Stages::new(states), CompensatedSum::new(states));
-            self.polynomials.iter_mut().for_each(|polynomial| polynomial.fit(states));
-            let Middle { x, rate } = &mut self.middle;
-            self.projected.iter_mut().chain([x, rate]).for_each(|room| room.resize(states, 0.0));
+            self.polynomial.fit(states);
+            self.projected.iter_mut().for_each(|projected| projected.resize(states, 0.0));
         }
     }
 
@@ -341,21 +254,15 @@ impl<T: Tableau> Method for Explicit<T> {
         (1..T::END).flat_map(|stage| self.stages.stage(stage)).find(|(_, rate)| !rate.is_finite())
     }
 
-    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>, scale: &Scale) {
-        self.interpolate(flow, start, h, end, WHOLE);
-        let allowed = |i: usize| scale.allowed_between(i, start.x[i], end.x[i]);
-        let error = self.dense_error(start, h, WHOLE, &allowed);
-        self.is_halved =
-            (DENSE_LIMIT..DENSE_HOPELESS).contains(&error) && self.halve(flow, start, h, end, &allowed) < error;
+    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
+        self.stages.set_stage(T::END, |rate| rate.copy_from_slice(end.rate));
+        self.stages.evaluate(flow, &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
+        let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
+        self.polynomial.set(start, h, end, |m, _, out| self.stages.write(row(m), h, out));
     }
 
-    fn dense(&self, start: PointRef<'_>, h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {
+    fn dense(&self, start: PointRef<'_>, _h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         const { assert!(FROM_ENDS + T::DENSE.len() <= COEFFICIENTS) };
-        let (index, start, theta) = match self.is_halved {
-            false => (WHOLE, start, theta),
-            true if theta < 0.5 => (FIRST_HALF, start, 2.0 * theta),
-            true => (SECOND_HALF, self.middle.at(start.t + 0.5 * h), 2.0 * theta - 1.0),
-        };
-        self.polynomials[index].evaluate(self.arch, FROM_ENDS + T::DENSE.len(), start, theta, x);
+        self.polynomial.evaluate(self.arch, FROM_ENDS + T::DENSE.len(), start, theta, x);
     }
 }

@@ -119,7 +119,7 @@ impl Method for Nystrom {
         })
     }
 
-    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>, _scale: &Scale) {
+    fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
         self.stages.set_stage(END, |rate| {
             rate.copy_from_slice(end.rate);
             flow.second_derivatives(end.x, rate);

@@ -77,7 +77,7 @@ impl Method for Rodas5p {
         self.stages.fault
     }
 
-    fn prepare_dense(&mut self, _flow: &Flow<'_>, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>, _scale: &Scale) {
+    fn prepare_dense(&mut self, _flow: &Flow<'_>, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {
         for (v, weights) in self.dense.iter_mut().zip(&RODAS5P_DENSE) {
             v.fill(0.0);
             add(v, weights, &self.stages.u, 1.0);
