@@ -251,7 +251,7 @@ fn hacksaw() {
 fn of_a_graph_whose_scene_is_wanted_alone_parameters_and_names_are_known() {
     let text = texts::of("mechanism.rs", "Hacksaw");
     let loaded = |wanted: &str| {
-        let graphs = load_wanted(&text, Wanted { scene: &|name| name == wanted, counted: Counted::Made });
+        let graphs = load_wanted(&text, Wanted { scene: &|name| name == wanted, counted: Counted::Made, most: None });
         graphs.unwrap_or_else(|faults| panic!("{}", faults[0])).remove(0)
     };
     let compiled = |graph: &Graph| -> Vec<&str> {

@@ -16,4 +16,4 @@ pub use bg_compiler::source::syntax::files::{Open, Opened};
 pub use blueprint::Blueprint;
 pub use code::BackEnd;
 pub use interpreted::Interpreted;
-pub use text::{Counted, Fault, Graph, Model, UsedFile, Wanted, load, load_file, syntax_faults};
+pub use text::{Counted, Fault, Graph, Model, UsedFile, Wanted, load, load_file, load_wanted, syntax_faults};

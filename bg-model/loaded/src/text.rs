@@ -84,9 +84,17 @@ impl fmt::Display for Fault {
 /// # Errors
 /// All faults of the first stage that has any.
 pub fn load(text: &str) -> Result<Vec<Graph>, Vec<Fault>> {
+    load_wanted(text, Wanted { scene: &|_| true, counted: Counted::All, most: None })
+}
+
+/// The same without what is not wanted.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_wanted(text: &str, wanted: Wanted<'_>) -> Result<Vec<Graph>, Vec<Fault>> {
     let first = Opened { file: PathBuf::new(), text: text.to_owned() };
     let open: Open<'_> = &|path| Err(format!("cannot read {}: a text alone uses no files", path.display()));
-    load_file(Path::new(""), first, open, Wanted { scene: &|_| true, counted: Counted::All, most: None })
+    load_file(Path::new(""), first, open, wanted)
 }
 
 /// What is wanted of a text.

@@ -1,6 +1,6 @@
 use std::path::{Path, PathBuf};
 
-use bg_compiler::pipeline;
+use bg_compiler::pipeline::{self, Known};
 use bg_compiler::source::syntax::{self, files};
 use bg_compiler::tables::{self, Counted};
 use proc_macro2::{TokenStream, TokenTree};
@@ -232,7 +232,11 @@ fn lines_and_blanks_in_disorder_come_to_rest_at_once() {
 fn compiled(text: &str) -> Vec<String> {
     let source = syntax::parse(files::alone(text).expect("tokens")).expect("no faults of syntax");
     match pipeline::models_where(&source, &|_| false) {
-        Ok(models) => models.iter().map(|model| format!("{:?}", tables::tables(model, Counted::All))).collect(),
+        Ok(known) => {
+            let models =
+                known.iter().filter_map(|known| if let Known::Model(model) = known { Some(model) } else { None });
+            models.map(|model| format!("{:?}", tables::tables(model, Counted::All))).collect()
+        }
         Err(faults) => faults.into_iter().map(|fault| format!("{} {}", fault.code, fault.message)).collect(),
     }
 }
