@@ -1,5 +1,5 @@
 //! The command `gradient`: the same derivatives as `sensitivity`, integrals, squares of measured columns, refusals. The
-//! program is the example `mass_spring_damper`, which asks for the command; `pendulum` does not.
+//! program is the example `mass_spring_damper`.
 
 use std::fs;
 use std::path::Path;
@@ -107,8 +107,5 @@ fn what_cannot_be_asked_is_told() {
     assert!(fault.contains("a time in the run, 0 to 5 s"), "{fault}");
     let fault = refused(&run(directory, &["gradient"]));
     assert!(fault.contains("--of"), "{fault}");
-    let other = program("pendulum").current_dir(directory).args(["gradient", "--of", "x"]).output().unwrap();
-    let fault = refused(&other);
-    assert!(fault.contains("asks for it by `Compiled::gradients()`"), "{fault}");
     assert!(!directory.join("out").exists());
 }
