@@ -12,7 +12,7 @@ use bg_expressions::schedule::Operation;
 use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable};
 use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{ModuleResult, default_libcall_names};
+use cranelift_module::default_libcall_names;
 
 use crate::program::{Inputs, Lengths, Program};
 use functions::{SINE_AND_COSINE, called, sine_and_cosine};
@@ -72,17 +72,17 @@ impl Function {
                 builder.symbol(called.name, called.address);
             }
         }
-        Self::in_module(JITModule::new(builder), program, lengths).ok()
+        Self::in_module(JITModule::new(builder), program, lengths)
     }
 
-    fn in_module(mut module: JITModule, program: &Program, lengths: Lengths) -> ModuleResult<Self> {
+    fn in_module(mut module: JITModule, program: &Program, lengths: Lengths) -> Option<Self> {
         let id = translate(&mut module, program)?;
-        module.finalize_definitions()?;
+        module.finalize_definitions().ok()?;
         let address = module.get_finalized_function(id);
         // SAFETY: the function has been translated with this signature, in the convention of `extern "C"`.
         #[expect(unsafe_code, reason = "an address becomes a function")]
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
-        Ok(Self { entry, lengths, results: program.results.len(), module: Mutex::new(Some(module)) })
+        Some(Self { entry, lengths, results: program.results.len(), module: Mutex::new(Some(module)) })
     }
 
     /// Evaluates the program.

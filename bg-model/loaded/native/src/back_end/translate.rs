@@ -16,13 +16,14 @@ use cranelift_codegen::ir::{
 };
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::JITModule;
-use cranelift_module::{FuncId, Linkage, Module, ModuleResult};
+use cranelift_module::{FuncId, Linkage, Module};
 
 use super::functions::{SINE_AND_COSINE, called};
 use crate::program::{Operand, Program};
 
-/// Puts the function of a program into a module, which knows the functions that it calls; gives its number there.
-pub fn translate(module: &mut JITModule, program: &Program) -> ModuleResult<FuncId> {
+/// Puts the function of a program into a module, which knows the functions that it calls; gives its number there. None
+/// where the back end cannot.
+pub fn translate(module: &mut JITModule, program: &Program) -> Option<FuncId> {
     let mut context = module.make_context();
     let address = module.target_config().pointer_type();
     context.func.signature = signature(module, &[address; 5], &[]);
@@ -45,9 +46,9 @@ pub fn translate(module: &mut JITModule, program: &Program) -> ModuleResult<Func
     body.builder.ins().return_(&[]);
     body.builder.seal_all_blocks();
     body.builder.finalize(module.target_config());
-    let id = module.declare_anonymous_function(&context.func.signature)?;
-    module.define_function(id, &mut context)?;
-    Ok(id)
+    let id = module.declare_anonymous_function(&context.func.signature).ok()?;
+    module.define_function(id, &mut context).ok()?;
+    Some(id)
 }
 
 fn signature(module: &JITModule, takes: &[Type], gives: &[Type]) -> Signature {
@@ -66,12 +67,12 @@ struct Functions {
 }
 
 impl Functions {
-    fn declared(module: &mut JITModule, context: &mut Context, program: &Program) -> ModuleResult<Self> {
+    fn declared(module: &mut JITModule, context: &mut Context, program: &Program) -> Option<Self> {
         let address = module.target_config().pointer_type();
         let mut declare = |name, takes: &[Type], gives: &[Type]| {
             let signature = signature(module, takes, gives);
-            let known = module.declare_function(name, Linkage::Import, &signature)?;
-            ModuleResult::Ok(module.declare_func_in_func(known, &mut context.func))
+            let known = module.declare_function(name, Linkage::Import, &signature).ok()?;
+            Some(module.declare_func_in_func(known, &mut context.func))
         };
         let sine_and_cosine = declare(SINE_AND_COSINE, &[types::F64, address], &[])?;
         let mut alone = HashMap::new();
@@ -83,7 +84,7 @@ impl Functions {
                 alone.insert(*function, declare(called.name, &vec![types::F64; arguments.len()], &[types::F64])?);
             }
         }
-        Ok(Self { alone, sine_and_cosine, partners: partners(program) })
+        Some(Self { alone, sine_and_cosine, partners: partners(program) })
     }
 }
 
