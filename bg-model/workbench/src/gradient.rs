@@ -1,5 +1,4 @@
-//! The gradient of one number of a run, by a run followed backwards: for programs that ask for it by
-//! [`Compiled::gradients`](crate::compiled::Compiled::gradients), since it is compiled for each of their models.
+//! The gradient of one number of a run, by a run followed backwards.
 //!
 //! In: the number and its derivatives. Out: the same as a table and as CSV.
 

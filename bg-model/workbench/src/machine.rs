@@ -94,7 +94,7 @@ pub trait Machine {
     /// measured against.
     ///
     /// # Errors
-    /// As [`solve`](crate::precision::reference::solve).
+    /// As [`solve`].
     fn solution(&self, _accuracy: Accuracy, _instants: &[f64]) -> Option<Result<Solution, ReferenceError>> {
         None
     }

@@ -18,6 +18,10 @@ mod back_end;
 #[cfg(not(all(feature = "cranelift", any(target_arch = "x86_64", target_arch = "aarch64"))))]
 #[path = "elsewhere.rs"]
 mod back_end;
+#[cfg_attr(
+    not(all(feature = "cranelift", any(target_arch = "x86_64", target_arch = "aarch64"))),
+    allow(dead_code, reason = "what is not translated needs no order")
+)]
 mod program;
 
 pub use back_end::Function;

@@ -84,6 +84,7 @@ impl<S: Copy, const W: usize, const R: usize> Stack<S, W, R> {
     }
 
     /// The same, to be changed.
+    #[cfg(feature = "std")]
     #[inline(always)]
     pub fn groups_mut(&mut self) -> &mut [(usize, [[S; W]; R])] {
         &mut self.groups
