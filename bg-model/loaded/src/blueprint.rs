@@ -150,7 +150,7 @@ impl Codes {
             .chain(&self.impacts)
             .chain([&self.sizes, &self.not_finite])
             .map(|of| &of.code);
-        let second = self.second.as_ref().map(|of| &**of);
+        let second = self.second.as_deref();
         let second = second.into_iter().flat_map(|of| [&of.derivatives].into_iter().chain(&of.forces));
         let Self { rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers, .. } = self;
         [rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers]
