@@ -59,8 +59,19 @@ mod tests {
     #[test]
     fn sine_and_cosine_at_once_are_those_of_single_calls() {
         let mut random = fastrand::Rng::with_seed(3);
-        let edges =
-            [0.0, -0.0, 1e-300, 1.05e-8, 1.49e-8, -1.3e-8, 0.7853981633974483, 1e5, 1e22, f64::MAX, f64::INFINITY];
+        let edges = [
+            0.0,
+            -0.0,
+            1e-300,
+            1.05e-8,
+            1.49e-8,
+            -1.3e-8,
+            std::f64::consts::FRAC_PI_4,
+            1e5,
+            1e22,
+            f64::MAX,
+            f64::INFINITY,
+        ];
         let random = (0..100_000).map(|_| (2.0 * random.f64() - 1.0) * 2.0_f64.powi(random.i32(-40..40)));
         for x in edges.into_iter().chain(random) {
             let mut both = [0.0; 2];
