@@ -5,12 +5,11 @@ use std::process::ExitCode;
 
 use bg_model::description::Description;
 use bg_model::simulation::{MissingColumn, Recording};
+use bg_workbench::Program;
 use bg_workbench::extras::{Extras, Page};
 #[cfg(not(target_arch = "wasm32"))]
 use bg_workbench::figures::Figure;
-use bg_workbench::maker::Maker;
 use bg_workbench::summary::Additions;
-use bg_workbench::{Compiled, Program};
 
 use crate::columns::{has_reference_columns, reference_columns};
 #[cfg(not(target_arch = "wasm32"))]
@@ -20,15 +19,10 @@ use crate::mechanism::Hacksaw;
 use crate::precision::case;
 use crate::{checks, sources, summary};
 
-/// What makes its models.
-pub(crate) fn maker() -> impl Maker {
-    Compiled::<Hacksaw>::new()
-}
-
 /// The program.
 #[must_use]
 pub fn program() -> Program {
-    let program = Program::with(maker());
+    let program = Program::of::<Hacksaw>();
     #[cfg(not(target_arch = "wasm32"))]
     let program = program.with_cases(case::cases(), &["paper", "full-offset", "rigid"]);
     program

@@ -1,13 +1,13 @@
 //! The scenes of the hacksaw by a name that the compiler knows.
 
+use bg_model::description::Description;
 use bg_model::mechanism::{MechanismVisitor, Scenes};
+use bg_model::parameters::Parameters;
+use bg_workbench::Compiled;
 use bg_workbench::parameters::Values;
 use bg_workbench::scenes::{self, Fixed};
 
-use crate::command::maker;
 use crate::mechanism::{Hacksaw, HacksawParameters};
-use bg_model::description::Description;
-use bg_model::parameters::Parameters;
 
 /// A scene, or the literal model that the scenes are reduced from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,13 +61,14 @@ impl Scene {
     /// # Errors
     /// A value differs from the one that the scene keeps the parameter at.
     pub fn parameters<P: Parameters>(self, values: &HacksawParameters) -> Result<P, Fixed> {
-        let own = scenes::own_values(&self.record(), &scenes::scenes(&maker()), &Values::of(values))?;
+        let own =
+            scenes::own_values(&self.record(), &scenes::scenes(&Compiled::<Hacksaw>::new()), &Values::of(values))?;
         Ok(P::of_values(own.values()))
     }
 
     /// The workbench's record of it, which lists the scenes in the same order.
     fn record(self) -> scenes::Scene {
-        scenes::scenes(&maker()).swap_remove(self as usize)
+        scenes::scenes(&Compiled::<Hacksaw>::new()).swap_remove(self as usize)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a model of text costs beside the same model compiled by rustc: prints a table.
 //!
-//! `cargo bench -p bond-graph-tests --bench text [-- WORD]`, for all models or those whose name contains the word. Times
-//! are those of the processor, minima of [`ROUNDS`] rounds in which the back ends take turns.
+//! `cargo bench -p bond-graph-tests --bench text [-- WORD]`, for all models or those whose name contains the word.
+//! Times are those of the processor, minima of [`ROUNDS`] rounds in which the back ends take turns.
 #![allow(missing_docs)]
 
 #[path = "../loaded/texts.rs"]

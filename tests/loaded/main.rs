@@ -1,5 +1,5 @@
-//! Models of text, interpreted and in machine code, beside the same models compiled by rustc: tables, functions and runs
-//! are equal to the bit.
+//! Models of text, interpreted and in machine code, beside the same models compiled by rustc: tables, functions and
+//! runs are equal to the bit.
 
 mod random;
 mod studies;
@@ -157,7 +157,8 @@ fn same_at(compiled: &dyn Machine, loaded: &dyn Machine, t: f64, x: &[f64], comp
         compared.filled(of.damping_sparsity().len(n), |entries| of.damping(t, x, &negative, entries))
     });
     assert_eq!(compiled.series().is_some(), loaded.series().is_some(), "{name}");
-    // Coefficients of high orders differ from those of rustc's code in the last places: it is open why.
+    // Of rustc's code they differ in the last places: where it takes two products at once it may change places of
+    // factors, and so the order in which an inner sum is made.
     if compared == Compared::Exactly {
         both("series", &|of| bits(&expanded(of, t, x, &negative)));
     }

@@ -1,7 +1,7 @@
 //! Faults of a text as a reader sees them.
 //!
-//! In: a text and its faults. Out: each with its code, its place in the text and what to do, as rustc shows its own; the
-//! same as JSON, one line each.
+//! In: a text and its faults. Out: each with its code, its place in the text and what to do, as rustc shows its own;
+//! the same as JSON, one line each.
 
 use std::io::{IsTerminal, stderr};
 use std::path::Path;

@@ -190,7 +190,8 @@ fn imported(format: Format, path: &Path) -> Result<String, FileFault> {
     Ok(imported.text)
 }
 
-/// The files that a text is made of: the one at `path`, those that it uses, and those that it would use if they were there.
+/// The files that a text is made of: the one at `path`, those that it uses, and those that it would use if they were
+/// there.
 ///
 /// # Panics
 /// The machine has no memory for a thread.
@@ -215,8 +216,8 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
 /// What is wanted of a text.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
-    /// Where one scene alone is wanted beside the one that stands for the graph, its name on the command line; only what
-    /// runs it is made.
+    /// Where one scene alone is wanted beside the one that stands for the graph, its name on the command line; only
+    /// what runs it is made.
     pub scene: Option<String>,
     /// The most statements of a graph with its repetitions and parts written out; none: 20000.
     pub most: Option<usize>,

@@ -1,7 +1,7 @@
 //! The program `bond`: every command of the workbench on a text file, without rustc.
 //!
-//! In: a command, a file with graphs in the language of `bond_graph!` (or a robot's description), the command's options.
-//! Out: what the command gives of the models of the file, which run in machine code or are interpreted.
+//! In: a command, a file with graphs in the language of `bond_graph!` (or a robot's description), the command's
+//! options. Out: what the command gives of the models of the file, which run in machine code or are interpreted.
 
 mod arguments;
 mod check;

@@ -1,25 +1,16 @@
 //! The models of a graph of a text, for the workbench.
 //!
-//! In: the graphs of a text, the name of one. Out: what makes its models: they run in machine code where that pays, or are
-//! interpreted.
+//! In: the graphs of a text, the name of one. Out: what makes its models: they run in machine code where that pays, or
+//! are interpreted.
 
-use std::rc::Rc;
 use std::sync::Arc;
 
-use bg_analysis::identify::{Data, Identified, IdentifyError, Variable, identify};
-use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium, linearise_at};
 use bg_loaded::{BackEnd, Blueprint, Graph, Interpreted};
 use bg_model::description::Description;
-use bg_model::dynamics;
-use bg_model::extended::Accuracy;
 use bg_model::input::Input;
-use bg_model::mechanism::Differentiable;
 use bg_model::parameters::ParameterError;
-use bg_model::run::{Request, State};
-use bg_model::sensitivity::{Sensitivities, SensitivityError, directions, sensitivities};
-use bg_workbench::machine::Machine;
+use bg_workbench::machine::{Machine, Studied};
 use bg_workbench::maker::Maker;
-use bg_workbench::precision::reference::{ReferenceError, Solution, solve};
 
 /// A graph of a text.
 #[derive(Clone, Debug)]
@@ -71,45 +62,6 @@ impl Maker for Loaded {
 
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError> {
         let model = Interpreted::new(self.blueprint(model), own, inputs)?.by(self.back_end);
-        Ok(Box::new(Made { over_slices: model.machine(), model }))
-    }
-}
-
-/// A model of it.
-struct Made {
-    model: Interpreted,
-    over_slices: Rc<dyn dynamics::Machine>,
-}
-
-impl Machine for Made {
-    fn model(&self) -> Rc<dyn dynamics::Machine> {
-        Rc::clone(&self.over_slices)
-    }
-
-    fn equilibrium(&self, t: f64, guess: &[f64]) -> Option<Result<Equilibrium, LinearError>> {
-        Some(equilibrium(&self.model, t, guess))
-    }
-
-    fn linearised(&self, state: &State) -> Option<Result<StateSpace, LinearError>> {
-        Some(linearise_at(&self.model, state))
-    }
-
-    fn sensitivities(&self, request: &Request, by: &[&str]) -> Option<Result<Sensitivities, SensitivityError>> {
-        let directions = directions(self.model.description(), by);
-        Some(directions.map_err(Into::into).and_then(|by| sensitivities(&self.model, request, &by)))
-    }
-
-    fn identified(
-        &self,
-        request: &Request,
-        data: &Data,
-        variables: &[Variable],
-        told: &mut dyn FnMut(&[f64], f64),
-    ) -> Option<Result<Identified, IdentifyError>> {
-        Some(identify(&self.model, request, data, variables, told))
-    }
-
-    fn solution(&self, accuracy: Accuracy, instants: &[f64]) -> Option<Result<Solution, ReferenceError>> {
-        Some(solve(&self.model, accuracy, instants, &|_| true))
+        Ok(Box::new(Studied::new(model)))
     }
 }

@@ -1,7 +1,7 @@
 //! What a model is made of, once for all its parameters: its tables and its programs.
 //!
-//! In: a [`Compiled`]. Out: a [`Blueprint`], of which [`Interpreted`](crate::Interpreted) makes models. Derivatives, what is
-//! for states of second order and the elimination are made when they are first asked for: many runs do without.
+//! In: a [`Compiled`]. Out: a [`Blueprint`], of which [`Interpreted`](crate::Interpreted) makes models. Derivatives,
+//! what is for states of second order and the elimination are made when they are first asked for: many runs do without.
 
 use std::ops::Range;
 use std::sync::Arc;

@@ -1,8 +1,8 @@
 //! Models of `bond_graph!` text that run without rustc: the text is compiled by the compiler of the macro, its programs
 //! are interpreted.
 //!
-//! In: text in the language of the macro, with the files that it uses. Out: [`Graph`]s, of whose models [`Interpreted`] makes machines for
-//! [`bg_model::run::Simulation::over`]. They have the bits of generated code.
+//! In: text in the language of the macro, with the files that it uses. Out: [`Graph`]s, of whose models [`Interpreted`]
+//! makes machines for [`bg_model::run::Simulation::over`]. They have the bits of generated code.
 
 mod blueprint;
 mod code;

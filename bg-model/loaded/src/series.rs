@@ -1,7 +1,7 @@
 //! The Taylor series of the rates, order by order.
 //!
-//! In: the routine of the rates. Out: [`SeriesCode`], whose operations are those of generated code: what does not change
-//! is evaluated once; at each order what changes has the coefficient of that order, and products, quotients and
+//! In: the routine of the rates. Out: [`SeriesCode`], whose operations are those of generated code: what does not
+//! change is evaluated once; at each order what changes has the coefficient of that order, and products, quotients and
 //! functions read those of lower orders from a work table.
 //!
 //! Method: at an order after the first a product is its inner sum, which needs lower orders only and is made for all
@@ -24,8 +24,8 @@ use bg_native::{Operand, Program};
 
 use crate::code::{BackEnd, Code, Places, Row};
 
-/// The series of a routine. Its values stand in one row: what is read, what does not change, then the [`Known`] parts of
-/// products, then what the stages give.
+/// The series of a routine. Its values stand in one row: what is read, what does not change, then the [`Known`] parts
+/// of products, then what the stages give.
 #[derive(Debug)]
 pub struct SeriesCode {
     pub size: SeriesSize,

@@ -78,8 +78,8 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The graphs of a text with their models. Of a Rust file the calls of `bond_graph!` outside of functions and modules are
-/// the text. A text alone uses no files.
+/// The graphs of a text with their models. Of a Rust file the calls of `bond_graph!` outside of functions and modules
+/// are the text. A text alone uses no files.
 ///
 /// # Errors
 /// All faults of the first stage that has any.

@@ -1,4 +1,5 @@
-//! The start of a model: the pose that closes its joints, the velocities that fit them, what the pose decides for a run.
+//! The start of a model: the pose that closes its joints, the velocities that fit them, what the pose decides for a
+//! run.
 //!
 //! In: [`Starting`], the routines of parameters and unknowns from which a start is calculated, with their tables. Out:
 //! the start state; on which sides roots are closed; which rows of joints that close loops take part. Whoever evaluates
@@ -117,8 +118,8 @@ fn pose<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Vec
 }
 
 /// Writes the start state of a model. The kinetic energy that impulses have taken to make it fit, J. What no unknown
-/// closes of the gaps of rigid joints, which is little, a projection does: a run would take it for an error of its steps.
-/// Allocates where there are joints.
+/// closes of the gaps of rigid joints, which is little, a projection does: a run would take it for an error of its
+/// steps. Allocates where there are joints.
 ///
 /// # Errors
 /// The pose does not close, or the velocities do not fit.

@@ -1,7 +1,8 @@
 //! A mass on a spring and a damper, pushed by a given force.
 //!
-//! The smallest model: one junction. Look at `stored` and `dissipated`, whose sum stays as it is while no force acts. The force
-//! is an input and 0 unless it is given: `--input force=10` moves the place where the mass comes to rest to 0.05 m.
+//! The smallest model: one junction. Look at `stored` and `dissipated`, whose sum stays as it is while no force acts.
+//! The force is an input and 0 unless it is given: `--input force=10` moves the place where the mass comes to rest to
+//! 0.05 m.
 //!
 //!     cargo run --release --example mass_spring_damper -- --set damping=1
 

@@ -1,7 +1,7 @@
 //! The models of a mechanism that `bond_graph!` made.
 //!
-//! In: the mechanism's type. Out: a [`Maker`]. Here all that is compiled for each model is compiled: in WebAssembly, for
-//! a page, only what runs a model.
+//! In: the mechanism's type. Out: a [`Maker`]. Here all that is compiled for each model is compiled: in WebAssembly,
+//! for a page, only what runs a model.
 
 use std::marker::PhantomData;
 
@@ -10,7 +10,7 @@ use bg_model::input::Input;
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
 use bg_model::parameters::{ParameterError, Parameters};
 
-use crate::machine::{Complete, Machine};
+use crate::machine::{Machine, Studied};
 use crate::maker::Maker;
 
 /// The models of the mechanism `Me`.
@@ -83,6 +83,10 @@ impl MechanismVisitor for Making<'_> {
     fn visit<Sc: Mechanism + 'static>(self) -> Self::Output {
         let Self { own, inputs } = self;
         assert_eq!(own.len(), Sc::Parameters::table().len(), "a value for each parameter");
-        Ok(Box::new(Complete::new(Sc::make(Sc::Parameters::of_values(own), inputs)?)))
+        let model = Sc::make(Sc::Parameters::of_values(own), inputs)?;
+        Ok(Box::new(cfg_select! {
+            target_arch = "wasm32" => Studied::new(model),
+            _ => Studied::complete(model),
+        }))
     }
 }

@@ -164,24 +164,32 @@ impl dyn Machine + '_ {
     }
 }
 
-/// A model of which all is known that a machine is asked.
-pub struct Complete<Mo> {
+/// A model, compiled or loaded, of which all is known that a machine is asked; gradients and runs side by side where it
+/// has them.
+pub struct Studied<Mo> {
     model: Mo,
     over_slices: Rc<dyn dynamics::Machine>,
+    reversible: Option<fn(&Mo) -> &dyn Reversible>,
+    accompanied: Option<fn(&Mo) -> &dyn Accompanied>,
 }
 
-impl<Mo: Differentiable> Complete<Mo> {
-    /// That of `model`.
+impl<Mo: Differentiable> Studied<Mo> {
+    /// That of `model`, without gradients and runs side by side.
     pub fn new(model: Mo) -> Self {
-        Self { over_slices: model.machine(), model }
+        Self { over_slices: model.machine(), model, reversible: None, accompanied: None }
+    }
+}
+
+#[cfg(not(target_arch = "wasm32"))]
+impl<Mo: Reversible + Accompanied> Studied<Mo> {
+    /// That of `model`, with all.
+    pub fn complete(model: Mo) -> Self {
+        Self { reversible: Some(|model| model), accompanied: Some(|model| model), ..Self::new(model) }
     }
 }
 
 /// A page asks a model for its runs and its equilibrium: what else it could be asked is not compiled there.
-impl<Mo> Machine for Complete<Mo>
-where
-    Mo: Followed + Reversible + Accompanied + Liftable<DoubleDouble>,
-{
+impl<Mo: Followed + Liftable<DoubleDouble>> Machine for Studied<Mo> {
     fn model(&self) -> Rc<dyn dynamics::Machine> {
         Rc::clone(&self.over_slices)
     }
@@ -208,8 +216,9 @@ where
         objective: &Objective<'_>,
         by: &[&str],
     ) -> Option<Result<Gradients, SensitivityError>> {
-        let directions = directions(self.model.description(), by).map_err(Into::into);
-        Some(directions.and_then(|by| gradient(&self.model, request, objective, &by)))
+        let model = self.reversible?(&self.model);
+        let directions = directions(model.description(), by).map_err(Into::into);
+        Some(directions.and_then(|by| gradient(model, request, objective, &by)))
     }
 
     #[cfg(not(target_arch = "wasm32"))]
@@ -230,7 +239,7 @@ where
 
     #[cfg(not(target_arch = "wasm32"))]
     fn in_lanes(&self, request: &Request, own: &[Vec<f64>]) -> Option<Vec<Result<Trajectory, LaneError>>> {
-        Some(in_lanes(&self.model, request, own))
+        Some(in_lanes(self.accompanied?(&self.model), request, own))
     }
 }
 

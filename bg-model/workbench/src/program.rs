@@ -45,9 +45,9 @@ impl Program {
         Self::with(Compiled::<Me>::new())
     }
 
-    /// The program of the models of `maker`: it runs the graph as it stands, or where it has scenes only, the first one.
-    /// Its command `precision` has a case for each scene and measures the scene that is run, against solutions that it
-    /// computes.
+    /// The program of the models of `maker`: it runs the graph as it stands, or where it has scenes only, the first
+    /// one. Its command `precision` has a case for each scene and measures the scene that is run, against solutions
+    /// that it computes.
     #[must_use]
     pub fn with(maker: impl Maker + 'static) -> Self {
         let models = Models::of(maker);

@@ -1,17 +1,18 @@
 //! What is measured: the scenes, and the rod out of the plane, each with its stored solution.
 
 use bg_model::parameters::Parameters;
+use bg_workbench::Compiled;
 use bg_workbench::precision::case::{Case, CaseSolution};
 use bg_workbench::scenes::scenes;
 
 use super::reference::Reference;
-use crate::command::maker;
+use crate::mechanism::Hacksaw;
 
 /// All cases.
 #[must_use]
 pub fn cases() -> Vec<Case> {
     let paper = CaseSolution::Stored(|| Reference::Paper.load());
-    let mut cases = Case::of_scenes(&scenes(&maker()), 5.0, paper);
+    let mut cases = Case::of_scenes(&scenes(&Compiled::<Hacksaw>::new()), 5.0, paper);
     for case in &mut cases {
         match case.name.as_str() {
             "rigid" => case.solution = CaseSolution::Stored(|| Reference::Rigid.load()),

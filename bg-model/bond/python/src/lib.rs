@@ -1,7 +1,7 @@
 //! Mechanisms as text in Python, without a toolchain.
 //!
-//! In: text in the language of `bond_graph!`, or a file that `bond` takes. Out: a model with the functions of `bg-python`;
-//! or `FaultError`, which says all faults at their places.
+//! In: text in the language of `bond_graph!`, or a file that `bond` takes. Out: a model with the functions of
+//! `bg-python`; or `FaultError`, which says all faults at their places.
 
 use std::path::PathBuf;
 

@@ -52,18 +52,14 @@ impl<'t> Layout<'t> {
     /// The text. A block in a line that is too long is opened, each of its entries in a line of its own.
     pub fn text(mut self) -> String {
         loop {
-            let (text, starts) = self.lines();
+            let (text, line_of) = self.lines();
             let mut is_done = true;
-            for (line, text) in text.lines().enumerate().filter(|(_, text)| text.chars().count() > WIDTH) {
-                debug_assert!(!text.is_empty());
-                let end = starts.partition_point(|(_, of)| *of <= line);
-                let start = starts.partition_point(|(_, of)| *of < line);
-                let places = starts[start..end].iter().map(|(place, _)| *place);
-                let last = starts[end - 1].0;
-                let block = places.into_iter().find(|&place| {
+            for (line, _) in text.lines().enumerate().filter(|(_, text)| text.chars().count() > WIDTH) {
+                let [start, end] = [line, line + 1].map(|line| line_of.partition_point(|of| *of < line));
+                let block = (start..end).find(|&place| {
                     let is_brace = self.tokens[place].kind == Kind::Open(Delimiter::Brace);
                     let close = self.structure.partner[place];
-                    is_brace && close > place + 1 && close <= last && !self.is_open[place]
+                    is_brace && close > place + 1 && close < end && !self.is_open[place]
                 });
                 if let Some(block) = block {
                     (self.is_open[block], self.is_split[block], is_done) = (true, true, false);
@@ -76,8 +72,8 @@ impl<'t> Layout<'t> {
     }
 
     /// The text, and the line of each token.
-    fn lines(&self) -> (String, Vec<(usize, usize)>) {
-        let (mut text, mut starts) = (String::new(), Vec::with_capacity(self.tokens.len()));
+    fn lines(&self) -> (String, Vec<usize>) {
+        let (mut text, mut line_of) = (String::new(), Vec::with_capacity(self.tokens.len()));
         let (mut line, mut indent) = (0, 0);
         // The indentations of the lines in which the brackets around were opened.
         let mut around: Vec<usize> = Vec::new();
@@ -95,7 +91,7 @@ impl<'t> Layout<'t> {
                 }
             }
             text.push_str(token.text);
-            starts.push((place, line));
+            line_of.push(line);
             line += token.text.matches('\n').count();
             if let Kind::Open(_) = token.kind {
                 around.push(indent);
@@ -104,7 +100,7 @@ impl<'t> Layout<'t> {
         if !text.is_empty() {
             text.push('\n');
         }
-        (text, starts)
+        (text, line_of)
     }
 
     /// The indentation of a line that begins with this token, in brackets of a line with the indentation `around`.

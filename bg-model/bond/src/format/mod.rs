@@ -1,9 +1,9 @@
 //! Texts of the language in one form.
 //!
-//! In: a text without faults of syntax. Out: the same words, marks and comments with other blanks and line ends. Statements
-//! of a graph or part stand in lines of their own, indented by its braces; in any other block, and within a statement,
-//! lines are as they were written. A block that was written in one line stays so where it fits. Between lines is at most
-//! one that is empty.
+//! In: a text without faults of syntax. Out: the same words, marks and comments with other blanks and line ends.
+//! Statements of a graph or part stand in lines of their own, indented by its braces; in any other block, and within a
+//! statement, lines are as they were written. A block that was written in one line stays so where it fits. Between
+//! lines is at most one that is empty.
 //!
 //! What has been formatted is not changed by formatting it again.
 

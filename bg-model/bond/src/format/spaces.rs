@@ -39,8 +39,8 @@ pub fn spaced(tokens: &[Token], structure: &Structure, b: usize) -> bool {
     }
 }
 
-/// Whether a token is the sign of a number: it stands where a value begins. After a word, which may be that of a clause or a
-/// value itself, blanks tell.
+/// Whether a token is the sign of a number: it stands where a value begins. After a word, which may be that of a clause
+/// or a value itself, blanks tell.
 fn is_sign(tokens: &[Token], place: usize) -> bool {
     if !tokens[place].is("-") {
         return false;

@@ -1,7 +1,7 @@
 //! A text as words, marks and comments, each with what stood before it.
 //!
-//! In: a text. Out: its tokens in their order, as they are written; nothing but blanks and line ends is lost. Comments are
-//! what the tokens of the language leave between them.
+//! In: a text. Out: its tokens in their order, as they are written; nothing but blanks and line ends is lost. Comments
+//! are what the tokens of the language leave between them.
 
 use std::ops::Range;
 

@@ -23,8 +23,9 @@ impl Changes {
         Self { others, known: None, seen: None }
     }
 
-    /// Whether the files have changed since that was asked last, and have been left alone since the last look: an editor
-    /// may need several steps to save one. `files` are those that the text is made of. The first time there is a change.
+    /// Whether the files have changed since that was asked last, and have been left alone since the last look: an
+    /// editor may need several steps to save one. `files` are those that the text is made of. The first time there is a
+    /// change.
     pub fn are_there(&mut self, files: impl Fn() -> Vec<PathBuf>) -> bool {
         let now = |files: &[PathBuf]| -> Vec<Stamp> { files.iter().map(|file| (file.clone(), stamp(file))).collect() };
         let known: Option<Vec<PathBuf>> =

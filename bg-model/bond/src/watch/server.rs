@@ -86,7 +86,8 @@ impl Shared {
     }
 }
 
-/// Starts to answer, on a port of this machine that others do not reach; 0 is a free one. Gives the address of the page.
+/// Starts to answer, on a port of this machine that others do not reach; 0 is a free one. Gives the address of the
+/// page.
 ///
 /// # Errors
 /// The port cannot be had: a sentence.

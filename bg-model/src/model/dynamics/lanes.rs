@@ -13,8 +13,8 @@ use crate::model::scalar::Scalar;
 use crate::model::scalar::lanes::{Lanes, Vector};
 use crate::model::system::System;
 
-/// A system as runs side by side in the vectors `V` ask for it, over slices: each of its functions is compiled for these
-/// vectors.
+/// A system as runs side by side in the vectors `V` ask for it, over slices: each of its functions is compiled for
+/// these vectors.
 ///
 /// # Panics
 /// As [`Dynamics`](super::Dynamics).

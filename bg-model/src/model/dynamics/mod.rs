@@ -2,9 +2,9 @@
 //! that what drives them is compiled once.
 //!
 //! In: a [`System`] or [`Model`] whose numbers are in its type. Out: the same as one table of functions, [`Dynamics`]
-//! and [`Machine`]: [`Typed`] in `f64`, where rates, series and eliminations are compiled for the vectors of the machine
-//! at hand; [`Over`] in any scalar; [`InVectors`] for slopes in vectors; [`InLanes`] for
-//! runs side by side; [`Swept`], its reverse sweeps.
+//! and [`Machine`]: [`Typed`] in `f64`, where rates, series and eliminations are compiled for the vectors of the
+//! machine at hand; [`Over`] in any scalar; [`InVectors`] for slopes in vectors; [`InLanes`] for runs side by side;
+//! [`Swept`], its reverse sweeps.
 
 #[cfg(feature = "std")]
 mod lanes;

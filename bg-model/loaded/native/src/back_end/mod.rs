@@ -38,8 +38,8 @@ static MACHINE: LazyLock<Option<OwnedTargetIsa>> = LazyLock::new(machine);
 
 fn machine() -> Option<OwnedTargetIsa> {
     let mut flags = settings::builder();
-    // The module wants calls of any distance, and code that stays where it is. The verifier finds faults of translation:
-    // tests have it.
+    // The module wants calls of any distance, and code that stays where it is. The verifier finds faults of
+    // translation: tests have it.
     let verified = if cfg!(debug_assertions) { "true" } else { "false" };
     for (name, value) in [
         ("use_colocated_libcalls", "false"),
@@ -54,8 +54,8 @@ fn machine() -> Option<OwnedTargetIsa> {
 }
 
 impl Function {
-    /// A program in machine code; none where there is no back end for the machine, where it gives no memory for code, or
-    /// where the program is longer than 20 000 operations.
+    /// A program in machine code; none where there is no back end for the machine, where it gives no memory for code,
+    /// or where the program is longer than 20 000 operations.
     ///
     /// # Panics
     /// An operation takes a value that does not come before it.
@@ -95,8 +95,9 @@ impl Function {
         assert!(fixed.len() >= of_fixed && states.len() >= of_states, "a place for each number that is read");
         assert!(read.len() >= of_read && negative.len() >= switches, "a place for each number and branch that is read");
         assert!(results.len() == self.results, "a place for each result");
-        // SAFETY: the code reads places below `lengths` and writes as many results as there are, which were checked; the
-        // slices do not overlap, as one of them is borrowed to be written; the memory of the code is there until `self` is dropped.
+        // SAFETY: the code reads places below `lengths` and writes as many results as there are, which were checked;
+        // the slices do not overlap, as one of them is borrowed to be written; the memory of the code is there until
+        // `self` is dropped.
         #[expect(unsafe_code, reason = "machine code is called")]
         unsafe {
             (self.entry)(fixed.as_ptr(), states.as_ptr(), read.as_ptr(), negative.as_ptr(), results.as_mut_ptr());

@@ -89,6 +89,11 @@ pub fn take<V: Vector>(place: usize, of: &[Lanes<V>], to: &mut [f64]) {
     }
 }
 
+/// The numbers at a place.
+pub fn at<V: Vector>(place: usize, of: &[Lanes<V>]) -> Vec<f64> {
+    of.iter().map(|of| *of.0.at(place)).collect()
+}
+
 /// Puts numbers of all states at a place.
 #[inline]
 pub fn put<V: Vector>(place: usize, to: &mut [Lanes<V>], numbers: &[f64]) {

@@ -11,7 +11,7 @@ use super::{Judgement, Kept, Step};
 use crate::model::dynamics::Abreast;
 use crate::model::reactions::LoopsInLanes;
 use crate::model::scalar::Scalar;
-use crate::model::scalar::lanes::{Lanes, Vector, put, replace, take};
+use crate::model::scalar::lanes::{Lanes, Vector, at, put, replace, take};
 use crate::solve::event::{Readings, Steps};
 use crate::solve::integrator::{AnyInLanes, Begin, OfOne, PointRef, Rates, Scale, Side};
 use crate::solve::statistics::Statistics;
@@ -56,13 +56,6 @@ pub(super) struct Group<V: Vector> {
     reach: Lanes<V>,
     errors: Lanes<V>,
     judged: Judged<V>,
-}
-
-/// The readings of the guards in a run's step: values and slopes (per s) at both ends, values in its middle.
-pub(super) struct Guards {
-    pub start: [Vec<f64>; 2],
-    pub end: [Vec<f64>; 2],
-    pub middle: Vec<f64>,
 }
 
 /// What has come of steps: a bit for each run.
@@ -235,11 +228,14 @@ impl<V: Vector> Group<V> {
         take(lane, &self.end[1], rate);
     }
 
-    /// The readings of the guards in a run's step.
-    pub fn guards(&self, lane: usize) -> Guards {
-        let Readings { start, end, middle, .. } = &self.readings;
-        let of = |guards: &Vec<Lanes<V>>| guards.iter().map(|guard| *guard.0.at(lane)).collect();
-        Guards { start: start.each_ref().map(of), end: end.each_ref().map(of), middle: of(middle) }
+    /// The readings of the guards at the end of a run's step: values, slopes (per s), values in its middle.
+    pub fn guards(&self, lane: usize) -> ([Vec<f64>; 2], Vec<f64>) {
+        (self.readings.end.each_ref().map(|guards| at(lane, guards)), at(lane, &self.readings.middle))
+    }
+
+    /// The readings of the guards at the start of a run's step: values, slopes (per s).
+    pub fn guards_at_start(&self, lane: usize) -> [Vec<f64>; 2] {
+        self.readings.start.each_ref().map(|guards| at(lane, guards))
     }
 
     /// Iterates towards the fastest oscillations of the runs at the places of `due`; gives their stiffnesses.

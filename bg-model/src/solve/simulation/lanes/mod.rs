@@ -25,7 +25,7 @@ use crate::solve::simulation::Samples;
 use crate::solve::statistics::Statistics;
 use crate::solve::stepper::Stepper;
 use controllers::{Control, Lead};
-use group::{Group, Guards, Tried};
+use group::{Group, Tried};
 
 /// A run to be made.
 pub(crate) struct Job<'a, O> {
@@ -225,9 +225,9 @@ impl<'a, O: Observer> Lane<'a, O> {
         // Of a plain step the group alone keeps what the guards are.
         let is_quiet = !self.run.sampling.is_due(t)
             && (is_clear && self.run.monitor.is_plain() || {
-                let Guards { start, end, middle } = group.guards(place);
+                let (end, middle) = group.guards(place);
                 let Run { monitor, stepper, .. } = &mut self.run;
-                monitor.take_start(start.each_ref().map(Vec::as_slice));
+                monitor.take_start(group.guards_at_start(place).each_ref().map(Vec::as_slice));
                 monitor.pass(&stepper.negative, end.each_ref().map(Vec::as_slice), &middle, h, is_clear)
             });
         if !is_quiet {
@@ -311,7 +311,7 @@ impl<'a, O: Observer> Lane<'a, O> {
     /// Takes over from the group where the run stands.
     fn take_start<V: Vector>(&mut self, group: &mut Group<V>, place: usize) {
         self.take_start_point(group, place);
-        self.run.monitor.take_start(group.guards(place).start.each_ref().map(Vec::as_slice));
+        self.run.monitor.take_start(group.guards_at_start(place).each_ref().map(Vec::as_slice));
         group.take_compensation(place, self.method().compensation());
     }
 
