@@ -32,6 +32,16 @@ bond_graph! {
         observe { angle: rad = pin.angle; place: rad = ends.place; speed: rad/s = pin.speed }
         scene StoppedFlat { expect planar; angles; }
     }
+    /// The same wheel with a torsion spring, and a mass on a spring: storages at displacements that are counted already.
+    graph Given {
+        param stiffness: N*m/rad = 0.1, above 0; param k: N/m = 50;
+        ground { point pivot = [0, 0, 0]; }
+        body wheel { mass 1; inertia [0.1, 0.1, 0.1]; start spin [0, 0, 10]; }
+        joint pin: revolute z (ground.pivot -> wheel) { rigid; }
+        C bar = stiffness at pin.angle; pin.spin -> bar;
+        1 slide: translation; I load = 2 start 1; C spring = k at slide.displacement; slide -> load; slide -> spring;
+        observe { angle: rad = pin.angle; x: m = slide.displacement; force: N = spring.effort; torque: N*m = bar.effort }
+    }
     /// A nut on a screw: a joint that turns and slides, with a law of both.
     graph Screw {
         param stiffness: N*m/rad = 0.1, above 0;
@@ -92,6 +102,22 @@ fn a_law_of_an_angle_winds_up_over_turns() {
         expected(&run(&turned, 6.0), tilt, "turned");
         let rigid = Rigid::new(RigidParameters { tilt, ..Default::default() }).expect("a model");
         expected(&run(&rigid, 6.0), tilt, "rigid");
+    }
+}
+
+/// They were refused: nothing knew how fast an angle that counts turns, or a displacement of a junction, changes.
+#[test]
+fn a_storage_may_be_at_an_angle_or_a_displacement_that_is_counted() {
+    let model = Given::new(GivenParameters::default()).expect("a model");
+    let run = run(&model, 6.0);
+    // 2 x'' = -50 x, with a momentum of 1 N s at the start.
+    let travel = |t: f64| 0.1 * (5.0 * t).sin();
+    assert!(off(&run, "angle", wound(0.0)) < 1e-6 && off(&run, "torque", |t| 0.1 * wound(0.0)(t)) < 1e-7);
+    assert!(off(&run, "x", travel) < 1e-8 && off(&run, "force", |t| 50.0 * travel(t)) < 1e-6);
+    // At the start the spring has no force: a run that measures errors by sizes found none for the displacement, and stopped.
+    for method in [Integrator::Auto, Integrator::Dop853, Integrator::Taylor, Integrator::Radau9, Integrator::Bs5] {
+        let by_sizes = Simulation::new(&model).method(method).rtol(1e-8).every(0.05).until(6.0).run().expect("a run");
+        assert!(off(&by_sizes, "x", travel) < 3e-7, "{method:?}: {:e}", off(&by_sizes, "x", travel));
     }
 }
 

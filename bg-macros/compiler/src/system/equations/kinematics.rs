@@ -36,6 +36,7 @@ impl Signals<'_> {
         if !self.stops().is_empty() {
             self.add_displacements(&mut seeds);
         }
+        self.add_ways(&mut seeds);
         let faults: Vec<Fault> = nodes.into_iter().filter_map(|node| self.prove(node, &seeds)).collect();
         self.given_flows.clear();
         self.forget();
@@ -67,10 +68,28 @@ impl Signals<'_> {
         }
     }
 
+    /// The rates of angles that count turns and of displacements of junctions.
+    fn add_ways(&mut self, seeds: &mut BTreeMap<Symbol, Id>) {
+        for (index, state) in self.turns.clone() {
+            let speed = self.evaluate(&self.graph.turns[index].speed, None);
+            let speed = self.without_loops(&speed);
+            seeds.insert(Symbol::state(state), speed.0[0]);
+        }
+        for (node, state) in self.ways.clone() {
+            let flow = self.junction_flow(node);
+            let flow = self.without_loops(&flow);
+            seeds.insert(Symbol::state(state), flow.0[0]);
+        }
+    }
+
     fn prove(&mut self, node: NodeId, seeds: &BTreeMap<Symbol, Id>) -> Option<Fault> {
         let graph = self.graph;
         let term = graph.element(node)?.displacement.as_ref()?;
         let displacement = self.evaluate(term, None);
+        // Of an angle that counts turns its state: the difference is zero in a pose, and changes with nothing.
+        let zero = self.pool.zero();
+        let counted = |symbol| matches!(symbol, Symbol::Turned(_)).then_some(zero);
+        let displacement = Value(substitute(&mut self.pool, &displacement.0, &counted));
         let bond = graph.node(node).bonds[0];
         let flow = self.flow(bond);
         let flow = flow.scale(&mut self.pool, graph.sign(bond, node));
