@@ -78,6 +78,7 @@ pub struct Codes {
     pub required: Option<Alone>,
     pub required_at_start: Option<Alone>,
     pub not_finite: Alone,
+    pub pivots: Option<Alone>,
     pub series: Deferred<SeriesCode>,
 }
 
@@ -148,6 +149,7 @@ impl Codes {
             .chain(self.derivatives.damping.as_ref().map(|(_, of)| of))
             .chain(&self.holding)
             .chain(&self.impacts)
+            .chain(&self.pivots)
             .chain([&self.sizes, &self.not_finite])
             .map(|of| &of.code);
         let second = self.second.as_deref();
@@ -197,7 +199,17 @@ fn codes(programs: Programs, rows: &Rows, states: usize, damped: Vec<(usize, usi
     let (code, alone) = (|routine: &Routine| rows.code(routine), |of: &Program<1>| rows.alone(of));
     let some = |of: &Option<Program<1>>| of.as_ref().map(alone);
     let Programs {
-        running, derivatives, second_order, holding, impacts, sizes, starting, required, not_finite, ..
+        running,
+        derivatives,
+        second_order,
+        holding,
+        impacts,
+        sizes,
+        starting,
+        required,
+        not_finite,
+        pivots,
+        ..
     } = programs;
     let Running { constants, rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers } =
         &running;
@@ -228,6 +240,7 @@ fn codes(programs: Programs, rows: &Rows, states: usize, damped: Vec<(usize, usi
         required: some(&required[0]),
         required_at_start: some(&required[1]),
         not_finite: alone(&not_finite),
+        pivots: some(&pivots),
         series: {
             let rate = running.rate;
             deferred(move || SeriesCode::of(&rate, finds))

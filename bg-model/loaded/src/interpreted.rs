@@ -64,6 +64,7 @@ pub(crate) struct Rows<S: Scalar> {
     pub impacts: Own<S>,
     pub sizes: Own<S>,
     pub not_finite: Own<S>,
+    pub pivots: Own<S>,
     pub series: OnceCell<RefCell<SeriesRow<S>>>,
 }
 
@@ -318,6 +319,7 @@ impl<S: Scalar> Rows<S> {
             impacts: OnceCell::new(),
             sizes: OnceCell::new(),
             not_finite: OnceCell::new(),
+            pivots: OnceCell::new(),
             series: OnceCell::new(),
         }
     }

@@ -93,6 +93,16 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
         Origin::first(&inputs.chain(laws).collect::<Vec<_>>())
     }
 
+    fn turning(&self) -> &'static [&'static str] {
+        self.blueprint.statics.turning
+    }
+
+    fn pivots(&self, t: S, x: &[S], negative: &[S::Switch], pivots: &mut [S]) {
+        if let Some(of) = &self.programs().pivots {
+            self.alone(of, &self.rows.pivots, Moment::at(t, x, negative), pivots);
+        }
+    }
+
     fn sparsity(&self) -> Sparsity {
         self.blueprint.statics.sparsity
     }

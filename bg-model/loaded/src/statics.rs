@@ -27,6 +27,8 @@ pub struct Statics {
     pub stops: Option<Stops>,
     /// Kind and name of the laws that can give what is not finite.
     pub fallible: Vec<[&'static str; 2]>,
+    /// The joints of loops that may come to their ends.
+    pub turning: &'static [&'static str],
     pub sparsity: Sparsity,
 }
 
@@ -39,6 +41,7 @@ pub fn statics(of: &Tables) -> Statics {
         held: of.held.as_ref().map(held),
         stops: of.stops.as_ref().map(stops),
         fallible: of.fallible.iter().map(|(kind, name)| [*kind, text(name)]).collect(),
+        turning: each(&of.turning, |joint| text(joint)),
         sparsity: match of.unknowns {
             0 => Sparsity::Places(places(&of.jacobian)),
             unknowns => Sparsity::Bordered { places: places(&of.jacobian), unknowns },

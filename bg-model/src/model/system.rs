@@ -99,6 +99,16 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         None
     }
 
+    /// The joints that close loops in closed form for links which might come to a pose where they turn either way: nothing
+    /// shows that the pivots of these loops keep away from zero. None by default.
+    fn turning(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Writes the pivots of the loops of [`System::turning`], m or m^2, into `pivots`. Each keeps the
+    /// sign that it has at the start.
+    fn pivots(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G], _pivots: &mut [S]) {}
+
     /// The Jacobian; by default none is known, and implicit methods take differences of the rate.
     #[inline]
     fn linearised(&self) -> Option<&impl Linearised<S, N, G>> {

@@ -135,6 +135,17 @@ pub enum Cause {
         /// When, s.
         t: f64,
     },
+    /// A loop whose links follow in closed form comes to a pose where they may turn either way.
+    #[error(
+        "the loop that `{joint}` closes comes to its end at t = {t:?} s, a pose in which a dependent body may turn either \
+         way: leave it out of `dependent`"
+    )]
+    LoopEnds {
+        /// The joint that closes it.
+        joint: &'static str,
+        /// When, s.
+        t: f64,
+    },
     /// What was to be recorded could not be calculated.
     #[error(transparent)]
     NoNumber(#[from] NoNumber),

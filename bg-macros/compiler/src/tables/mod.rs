@@ -53,6 +53,8 @@ pub struct Tables {
     pub first_branches: Vec<bool>,
     /// The laws that can give what is not finite, each the element's kind and name, in the order of the program.
     pub fallible: Vec<(&'static str, String)>,
+    /// The joints of the loops whose pivots nothing shows to keep away from zero, in the order of the program.
+    pub turning: Vec<String>,
     /// The groups of unknowns of algebraic loops.
     pub loops: Vec<Loop>,
     /// Row and column of each entry of the Jacobian.
@@ -106,6 +108,7 @@ pub fn tables(model: &Compiled, counted: Counted) -> Tables {
         second: model.second_order.states.clone(),
         first_branches: equations.switches.iter().map(|switch| switch.remembers).collect(),
         fallible: equations.fallible.iter().map(|law| (law.kind, law.element.clone())).collect(),
+        turning: equations.fallible.iter().filter(|law| law.may_vanish).map(|law| law.element.clone()).collect(),
         loops: loops(&equations.iterations),
         jacobian: model.jacobian.places(),
         unknowns: model.jacobian.unknowns.len(),

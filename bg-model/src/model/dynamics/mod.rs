@@ -95,6 +95,14 @@ pub trait Dynamics<S: Scalar = f64> {
         None
     }
 
+    /// [`System::turning`].
+    fn turning(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// [`System::pivots`].
+    fn pivots(&self, _t: S, _x: &[S], _negative: &[S::Switch], _pivots: &mut [S]) {}
+
     /// [`Linearised::sparsity`]; full where the system does not know its Jacobian.
     fn sparsity(&self) -> Sparsity {
         Sparsity::Full

@@ -123,6 +123,14 @@ where
         self.of.not_finite(t, values(x), switches(negative))
     }
 
+    fn turning(&self) -> &'static [&'static str] {
+        self.of.turning()
+    }
+
+    fn pivots(&self, t: f64, x: &[f64], negative: &[bool], pivots: &mut [f64]) {
+        self.of.pivots(t, values(x), switches(negative), pivots);
+    }
+
     fn sparsity(&self) -> Sparsity {
         self.of.linearised().map_or(Sparsity::Full, Linearised::sparsity)
     }

@@ -8,6 +8,7 @@
 //! the flow that joint i keeps at zero: J M^-1 J^T up to the sign. An impulse obeys the same equations, with the flow
 //! in place of b: it changes the flows by A l and the momenta by what the reactions move.
 
+mod ends;
 mod factors;
 mod immobile;
 mod impact;
@@ -23,6 +24,7 @@ use crate::model::dynamics::{Dynamics, branches};
 use crate::model::holding::{FITTING, Held, HeldNow, Redundancy, Slip, Slipping};
 use crate::model::nearest::{lifted, nearest};
 use crate::model::scalar::Scalar;
+pub(crate) use ends::EndMonitor;
 use factors::{Factors, Matrix};
 pub(crate) use impact::{After, Collision, impacts_of};
 #[cfg(feature = "std")]

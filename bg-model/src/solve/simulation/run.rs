@@ -14,7 +14,7 @@ use super::sizes::SizeMonitor;
 use super::step_size::{self, StepSizeController};
 #[cfg(feature = "std")]
 use crate::model::reactions::LoopsInLanes;
-use crate::model::reactions::{After, Broken, Collision, LoopMonitor};
+use crate::model::reactions::{After, Broken, Collision, EndMonitor, LoopMonitor};
 #[cfg(feature = "std")]
 use crate::model::scalar::lanes::Vector;
 use crate::solve::event::{Crossing, EventMonitor, Located, Stop, Struck};
@@ -47,6 +47,8 @@ pub(crate) struct Run<'a> {
     pub limit: u64,
     /// Of joints that close loops, where there are any.
     loops: Option<LoopMonitor>,
+    /// Of loops in closed form that may come to their ends, where there are any.
+    ends: Option<EndMonitor>,
     /// Of impacts on stops, where there are any.
     collision: Option<Collision<f64>>,
     /// Of the sizes of the states, by which errors are measured.
@@ -76,7 +78,7 @@ impl<'a> Run<'a> {
     ) -> Self {
         let (system, states) = (stepper.system, stepper.system.states());
         let has_breaks = system.next_break(span.t0) < f64::INFINITY;
-        let loops = LoopMonitor::new(system);
+        let (loops, ends) = (LoopMonitor::new(system), EndMonitor::new(system));
         let collision = system.stops().map(|stops| Collision::new(stops, system.kept_of_stops()));
         Self {
             stepper,
@@ -89,6 +91,7 @@ impl<'a> Run<'a> {
             attempts: 0,
             limit: settings.step_limit,
             loops,
+            ends,
             collision,
             sizes: SizeMonitor::new(&settings.tolerances, states, span.t0),
             rounding: RoundingMonitor::new(settings.tolerances.relative),
@@ -113,6 +116,11 @@ impl<'a> Run<'a> {
         self.monitor.begin_by_probe(&mut self.stepper, &clear, self.controller.reach());
         self.stepper.end.become_that(self.stepper.start.borrowed());
         self.check_start()?;
+        let Stepper { system, start, negative, .. } = &self.stepper;
+        let at = (start.t, start.x.as_slice());
+        if let Some(joint) = self.ends.as_mut().and_then(|ends| ends.reached(*system, at, negative)) {
+            return Err(Cause::LoopEnds { joint, t: start.t });
+        }
         let reach = self.controller.reach();
         let outcome = self.condition.as_mut().map_or(Ok(()), |condition| condition.begin(&mut self.stepper, reach));
         self.stepper.end.become_that(self.stepper.start.borrowed());
@@ -135,8 +143,12 @@ impl<'a> Run<'a> {
     /// Sees to it that the joints which close loops say where the mechanism goes at the end of the step.
     pub fn check_joints(&mut self) -> Result<(), Cause> {
         let Stepper { system, end, negative, .. } = &self.stepper;
+        let at = (end.t, end.x.as_slice());
+        if let Some(joint) = self.ends.as_mut().and_then(|ends| ends.reached(*system, at, negative)) {
+            return Err(Cause::LoopEnds { joint, t: end.t });
+        }
         let Some(loops) = &mut self.loops else { return Ok(()) };
-        match loops.check(*system, (end.t, end.x.as_slice()), negative, self.sizes.moved(*system)) {
+        match loops.check(*system, at, negative, self.sizes.moved(*system)) {
             Some(Broken::Torn(slipping)) => Err(Cause::Torn { slipping, t: end.t }),
             Some(Broken::Singular(redundancy)) => Err(Cause::Singular { redundancy, t: end.t }),
             None => Ok(()),
@@ -234,8 +246,15 @@ impl<'a> Run<'a> {
                 next.accept(t_new, h, error);
                 self.stepper.evaluate_end();
                 if is_near && is_finite(self.stepper.end.x.as_slice()) && is_finite(self.stepper.end.rate.as_slice()) {
-                    self.controller = next;
-                    return Ok(());
+                    match self.end_ahead() {
+                        None => {
+                            self.controller = next;
+                            return Ok(());
+                        }
+                        Some(joint) if !self.controller.is_adaptive() => return Err(Cause::LoopEnds { joint, t }),
+                        // A shorter step shows whether it is one.
+                        Some(_) => {}
+                    }
                 }
             }
             if error <= 1.0 {
@@ -248,6 +267,12 @@ impl<'a> Run<'a> {
                 return Err(self.lost(error));
             }
         }
+    }
+
+    /// The joint whose loop seems to come to its end in the step.
+    fn end_ahead(&mut self) -> Option<&'static str> {
+        let Stepper { system, start, h, negative, .. } = &self.stepper;
+        self.ends.as_mut()?.ahead(*system, (start.t, start.x.as_slice(), start.rate.as_slice()), *h, negative)
     }
 
     /// Whether the step begins or ends in the neighbourhood of a singular pose.

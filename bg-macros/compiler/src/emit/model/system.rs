@@ -25,7 +25,7 @@ impl Emission<'_> {
         let (rate, guards, project) = (self.rate(), self.guards(), self.project());
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
         let (next_break, first_branches, iterations) = (self.next_break(), self.first_branches(), self.iterations());
-        let runs_in_lanes = self.runs_in_lanes();
+        let (runs_in_lanes, pivots) = (self.runs_in_lanes(), self.pivots());
         quote! {
             #iterations
             impl<S: Scalar> ::bg_model::system::System<S, #n, #g> for Model<S> {
@@ -40,6 +40,7 @@ impl Emission<'_> {
                 }
                 #switch_name
                 #not_finite
+                #pivots
                 #accessors
             }
         }
@@ -173,11 +174,8 @@ impl Emission<'_> {
     /// are.
     fn runs_in_lanes(&self) -> Option<TokenStream> {
         let inputs = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect::<Vec<_>>();
-        let answer = if self.model.equations.found() > 0 || self.inline().is_none() {
-            quote!(false)
-        } else {
-            quote!(#(self.inputs.#inputs.is_constant())&&*)
-        };
+        let is_alone = self.model.equations.found() > 0 || self.inline().is_none() || !self.tables.turning.is_empty();
+        let answer = if is_alone { quote!(false) } else { quote!(#(self.inputs.#inputs.is_constant())&&*) };
         (!answer.is_empty()).then(|| {
             quote! {
                 fn runs_in_lanes(&self) -> bool {
@@ -194,6 +192,30 @@ impl Emission<'_> {
                 fn switch_name(&self, index: usize) -> Option<&'static str> {
                     DESCRIPTION.switches.get(index).map(|switch| switch.name)
                 }
+            }
+        })
+    }
+
+    /// The loops that may come to their ends, and their pivots; nothing where there are none.
+    fn pivots(&self) -> Option<TokenStream> {
+        let Shape { n, g, .. } = &self.shape;
+        let program = self.model.programs.pivots.as_ref()?;
+        let [routine] = &program.routines;
+        let (joints, constants, decided) = (&self.tables.turning, self.own_constants(program), self.decided().read());
+        let bindings = self.dynamic_bindings(routine);
+        let (statements, values) = self.body(routine);
+        Some(quote! {
+            fn turning(&self) -> &'static [&'static str] {
+                &[#(#joints),*]
+            }
+            fn pivots(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], pivots: &mut [S]) {
+                let parameters = &self.values;
+                #decided
+                #constants
+                let [x] = &x.data.0;
+                #bindings
+                #statements
+                pivots.copy_from_slice(&[#(#values),*]);
             }
         })
     }

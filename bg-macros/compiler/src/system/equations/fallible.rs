@@ -19,6 +19,8 @@ pub struct FallibleLaw {
     pub element: String,
     /// The effort or flow.
     pub value: Id,
+    /// Whether it is the pivot of a loop that nothing shows to keep away from zero.
+    pub may_vanish: bool,
 }
 
 /// What is known of an expression without its value.
@@ -46,7 +48,8 @@ impl Signals<'_> {
     pub(super) fn note_fallible(&mut self, node: NodeId, element: &Element, value: &Value) {
         if self.is_partial(element) {
             let (kind, name) = (element.kind.symbol(), &self.graph.node(node).name.text);
-            let laws = value.0.iter().map(|&value| FallibleLaw { kind, element: name.clone(), value });
+            let laws =
+                value.0.iter().map(|&value| FallibleLaw { kind, element: name.clone(), value, may_vanish: false });
             self.fallible.extend(laws);
         }
     }

@@ -36,6 +36,8 @@ pub(super) struct Root {
     pub slope: Id,
     /// What it is over the states that stay.
     value: Id,
+    /// Whether nothing shows that it keeps away from zero.
+    may_vanish: bool,
 }
 
 /// The two rows of a pin that closes a loop, and the vector along which their reaction acts on one link alone.
@@ -148,12 +150,14 @@ impl Choice {
         if !moves(pool, &[a, b, rest]) {
             return false;
         }
-        if !is_asked && !is_apart(equations, part, square) {
+        let may_vanish = !is_apart(equations, part, square);
+        if !is_asked && may_vanish {
             return false;
         }
         let pool = &mut equations.pool;
         let slope = link.slope(pool, [a, b]);
-        let pivot = self.root(equations, number, link, (Affine { by: [a, b], rest }, length), (slope, length));
+        let by = (Affine { by: [a, b], rest }, length);
+        let pivot = self.root(equations, number, link, by, (slope, length), may_vanish);
         let pool = &mut equations.pool;
         let flow = without(pool, row.flow, &[link.momentum]);
         let momentum = link.momentum_of(pool, flow, pivot, -1.0);
@@ -178,7 +182,8 @@ impl Choice {
         if !moves(pool, &rests) {
             return false;
         }
-        if !is_asked && !is_between(equations, distance, [of_link.square, of_last.square]) {
+        let may_vanish = !is_between(equations, distance, [of_link.square, of_last.square]);
+        if !is_asked && may_vanish {
             return false;
         }
         let rests = [x, y];
@@ -198,7 +203,8 @@ impl Choice {
         let (left, right) = (pool.mul(b, c), pool.mul(a, d));
         let across = pool.linear(0.0, &[(left, of_link.sense), (right, -of_link.sense)]);
         let [across] = self.shorter(pool, [across]);
-        let pivot = self.root(equations, first, link, (Affine { by, rest }, length), (across, length));
+        let by = (Affine { by, rest }, length);
+        let pivot = self.root(equations, first, link, by, (across, length), may_vanish);
         let pool = &mut equations.pool;
         self.give(pool, link, (last, &of_last), (&of_link, rests));
         let flows = [one.flow, other.flow].map(|flow| without(pool, flow, &[link.momentum, last.momentum]));
@@ -221,6 +227,7 @@ impl Choice {
         link: &Link,
         (Affine { by, rest }, length): (Affine, Id),
         (slope, size): (Id, Id),
+        may_vanish: bool,
     ) -> Id {
         let joint = equations.reactions[number].slip.joint.clone();
         let StateEquations { pool, states, sides, .. } = equations;
@@ -243,7 +250,7 @@ impl Choice {
         let symbol = Symbol::numbered(Symbol::Unsolved, self.roots.len());
         let size = applied(pool, &[size], &self.given)[0];
         let value = pool.mul(size, cosine);
-        self.roots.push(Root { joint, symbol, slope, value });
+        self.roots.push(Root { joint, symbol, slope, value, may_vanish });
         pool.symbol(symbol)
     }
 
@@ -288,10 +295,11 @@ impl Choice {
 
     /// Puts the roots, and the orientations that loops give, into all equations.
     pub(super) fn put_roots(&self, equations: &mut StateEquations) {
-        let laws = self.roots.iter().map(|Root { joint, symbol, .. }| FallibleLaw {
+        let laws = self.roots.iter().map(|Root { joint, symbol, may_vanish, .. }| FallibleLaw {
             kind: "closed loop",
             element: joint.clone(),
             value: equations.pool.symbol(*symbol),
+            may_vanish: *may_vanish,
         });
         equations.fallible = laws.chain(std::mem::take(&mut equations.fallible)).collect();
         equations.replace(&|symbol| match symbol.as_state() {
