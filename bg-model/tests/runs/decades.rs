@@ -103,23 +103,33 @@ fn exact(model: &dyn Liftable<DoubleDouble>, instants: &[f64]) -> Vec<Vec<f64>> 
     states
 }
 
-/// The largest error of a run up to `t_end` (s) over its tolerance, at the ends of some of its steps: of any state,
-/// in parts of what it counts.
-fn error<Me: Mechanism>(model: &Me, t_end: f64, method: Integrator, rtol: f64) -> f64 {
+/// The largest errors of a run up to `t_end` (s) over its tolerance, at the ends of some of its steps and between them:
+/// of any state, in parts of what it counts.
+fn errors<Me: Mechanism>(model: &Me, t_end: f64, method: Integrator, rtol: f64) -> [f64; 2] {
     const INSTANTS: usize = 20;
-    let request = Request { method, rtol, t_end, samples: Samples::Steps, ..Request::default() };
-    let run = Simulation::of(model, request).recording(&[Part::States]).run().expect("a run");
-    let mut rows: Vec<usize> = (1..=INSTANTS).map(|k| (run.times.len() - 1) * k / INSTANTS).collect();
+    const INSIDE: [f64; 3] = [0.2, 0.5, 0.8];
+    let run = |samples: Samples| {
+        let request = Request { method, rtol, t_end, samples, ..Request::default() };
+        Simulation::of(model, request).recording(&[Part::States]).run().expect("a run")
+    };
+    let whole = run(Samples::Steps);
+    let sizes = model.visit(Counting(&whole));
+    let mut rows: Vec<usize> = (1..=INSTANTS).map(|k| (whole.times.len() - 1) * k / INSTANTS).collect();
+    rows.retain(|&row| row > 0);
     rows.dedup();
-    let instants: Vec<f64> = rows.iter().map(|&row| run.times[row]).collect();
-    let sizes = model.visit(Counting(&run));
-    let exact = exact(model, &instants);
-    let columns = run.recording.columns.iter().zip(&sizes).enumerate();
-    let errors = columns.flat_map(|(state, (column, size))| {
-        let both = rows.iter().zip(&exact);
-        both.map(move |(&row, exact)| (column.values[row] - exact[state]).abs() / size)
-    });
-    errors.fold(0.0, f64::max) / rtol
+    let step = |&row: &usize| [whole.times[row - 1], whole.times[row]];
+    let between = rows.iter().map(step).flat_map(|[from, to]| INSIDE.map(|part| from + part * (to - from)));
+    let ends: Vec<f64> = rows.iter().map(|&row| whole.times[row]).collect();
+    [ends, between.collect()].map(|instants| {
+        let sampled = run(Samples::At(instants.clone()));
+        let exact = exact(model, &instants);
+        let columns = sampled.recording.columns.iter().zip(&sizes).enumerate();
+        let errors = columns.flat_map(|(state, (column, size))| {
+            let both = column.values.iter().zip(&exact);
+            both.map(move |(value, exact)| (value - exact[state]).abs() / size)
+        });
+        errors.fold(0.0, f64::max) / rtol
+    })
 }
 
 /// Numbers whose logarithms lie evenly.
@@ -158,9 +168,10 @@ fn all_are_within_thirty_tolerances<Me: Mechanism>(
     for case in 0..CASES {
         let (model, t_end) = machine(&mut drawn);
         for rtol in [1e-4, 1e-6, 1e-8, 1e-10] {
-            let off = error(&model, t_end, Integrator::Auto, rtol);
+            let [ends, between] = errors(&model, t_end, Integrator::Auto, rtol);
             let values = model.parameters().values();
-            assert!(off < WITHIN, "case {case} at {rtol:e}: {off} tolerances, {values:?} to {t_end} s");
+            assert!(ends < WITHIN, "case {case} at {rtol:e}: {ends} tolerances, {values:?} to {t_end} s");
+            assert!(between < WITHIN, "case {case} at {rtol:e}: {between} tolerances inside, {values:?} to {t_end} s");
         }
     }
 }
@@ -215,8 +226,8 @@ fn a_servo_s_pressure_is_right() {
     let methods = [Integrator::Auto, Integrator::Dop853, Integrator::Cfmr7, Integrator::Radau9, Integrator::Ark5];
     for method in methods {
         for rtol in [1e-4, 1e-6, 1e-8, 1e-10] {
-            let error = error(&model, 0.3, method, rtol);
-            assert!(error < 10.0, "{method:?} at {rtol:e}: {error} tolerances");
+            let [ends, between] = errors(&model, 0.3, method, rtol);
+            assert!(ends < 10.0 && between < WITHIN, "{method:?} at {rtol:e}: {ends}, inside {between} tolerances");
         }
     }
 }

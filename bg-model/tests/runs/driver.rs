@@ -15,7 +15,7 @@ fn the_counts_of_kepler_are_those_of_the_method() {
     assert_eq!((counts.dense_evaluations, counts.guard_evaluations, counts.events), (0, 0, 0));
     assert_eq!(record.steps.len() as u64, counts.steps);
     // Pinned; to be renewed only with a reason.
-    assert_eq!((counts.steps, counts.rejected), (245, 50));
+    assert_eq!((counts.steps, counts.rejected), (245, 46));
     let shortest = record.steps.windows(2).map(|t| t[1] - t[0]).fold(f64::INFINITY, f64::min);
     assert_eq!(counts.smallest_step, shortest.min(record.steps[0]));
     assert!(counts.largest_step > 10.0 * counts.smallest_step);

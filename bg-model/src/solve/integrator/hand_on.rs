@@ -40,6 +40,14 @@ macro_rules! hand_on {
             $present!((&mut) self, method => method.prepare_dense(flow, start, h, end));
         }
 
+        fn prepare_samples(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>, scale: &Scale) {
+            $present!((&mut) self, method => method.prepare_samples(flow, start, h, end, scale));
+        }
+
+        fn sample(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
+            $present!((&) self, method => method.sample(start, h, end, theta, x));
+        }
+
         fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
             $present!((&) self, method => method.dense(start, h, end, theta, x));
         }

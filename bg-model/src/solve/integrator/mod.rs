@@ -218,6 +218,16 @@ pub trait Method {
     /// nothing to prepare.
     fn prepare_dense(&mut self, _flow: &Flow<'_>, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>) {}
 
+    /// Makes what is prepared for [`Method::dense`] as exact as `scale` asks, for [`Method::sample`]: inside of a step
+    /// that output may err by more than at the ends. As above.
+    fn prepare_samples(&mut self, _flow: &Flow<'_>, _start: PointRef<'_>, _h: f64, _end: PointRef<'_>, _scale: &Scale) {
+    }
+
+    /// The state that [`Method::dense`] writes, made more exact where [`Method::prepare_samples`] has done so.
+    fn sample(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
+        self.dense(start, h, end, theta, x);
+    }
+
     /// Writes the state at `start` plus the part `theta` (0 to 1) of the step into `x`.
     fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]);
 }

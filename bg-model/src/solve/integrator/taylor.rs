@@ -285,6 +285,19 @@ impl Method for Taylor {
         }
     }
 
+    fn prepare_samples(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>, scale: &Scale) {
+        if self.is_by_other {
+            self.other.prepare_samples(flow, start, h, end, scale);
+        }
+    }
+
+    fn sample(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
+        if self.is_by_other {
+            return self.other.sample(start, h, end, theta, x);
+        }
+        self.dense(start, h, end, theta, x);
+    }
+
     fn dense(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
         if self.is_by_other {
             return self.other.dense(start, h, end, theta, x);

@@ -266,13 +266,14 @@ impl<V: Slopes> Work<V> {
         let none = self.sizes.alike(0.0);
         let (mut first, mut second) = (none, none);
         for (((from, to), k), &absolute) in self.begin.iter().zip(end).zip(&self.k.slopes).zip(&self.scale.absolute) {
-            let error = combined(k, DormandPrince::ERROR);
+            let [error, other_error] =
+                [DormandPrince::ERROR, DormandPrince::OTHER_ERROR].map(|row| combined(k, row).abs());
             // The step's own mean slope, less that of the method of order 3.
             let other = to.slopes.minus(from.slopes).minus(combined(k, DormandPrince::SECOND).scaled(h));
             let changed = from.slopes.abs().larger(to.slopes.abs()).times(self.sizes);
             let size = changed.larger(none.alike(to.value.abs())).scaled(self.scale.relative);
             let part = self.sizes.over(none.alike(absolute).plus(size));
-            first = first.larger(error.abs().times(part));
+            first = first.larger(other_error.larger(error).times(part));
             second = second.larger(other.abs().times(part));
         }
         let [first, second] = [first, second].map(|of| of.numbers().as_ref().iter().copied().fold(0.0, f64::max));

@@ -360,7 +360,7 @@ impl<'a> Run<'a> {
             }
             let part = (instant - self.stepper.start.t) / self.stepper.h;
             let Self { stepper, sample, .. } = self;
-            stepper.dense(part.min(1.0), sample);
+            stepper.sample(part.min(1.0), sample);
             // The dense output errs more than the step, and most near a singular pose.
             let most = if self.loops.is_some() { PROJECTIONS } else { 1 };
             let _ = (0..most).find(|_| stepper.project_state(instant, sample) <= MOVED);

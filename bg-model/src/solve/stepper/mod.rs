@@ -31,6 +31,7 @@ pub(crate) struct Stepper<'a> {
     /// The size of the last attempt, s. More precise than the difference of the two times.
     pub h: f64,
     dense_is_ready: bool,
+    samples_are_ready: bool,
     /// Whether joints may be rigid.
     is_held: bool,
     /// A state before it is projected.
@@ -51,6 +52,7 @@ impl<'a> Stepper<'a> {
             start,
             h: 0.0,
             dense_is_ready: false,
+            samples_are_ready: false,
             is_held: system.held().is_some(),
         }
     }
@@ -64,7 +66,7 @@ impl<'a> Stepper<'a> {
     /// Tries a step of size `h` (s); gives its error norm.
     pub fn attempt(&mut self, h: f64) -> f64 {
         self.h = h;
-        self.dense_is_ready = false;
+        (self.dense_is_ready, self.samples_are_ready) = (false, false);
         let (method, flow, start, end, scale) = self.split();
         end.t = start.t + h;
         let (start, end) = (start.borrowed(), end.x.as_mut_slice());
@@ -79,7 +81,8 @@ impl<'a> Stepper<'a> {
 
     /// The same where the end is written already.
     pub fn arrived(&mut self, h: f64) {
-        (self.h, self.dense_is_ready) = (h, false);
+        self.h = h;
+        (self.dense_is_ready, self.samples_are_ready) = (false, false);
     }
 
     /// The norm of what the projection leaves of the last attempt's error, at most 1 where that is rounding; none where
@@ -226,16 +229,35 @@ impl<'a> Stepper<'a> {
     }
 
     /// Writes the state at the part `theta` of the step, not projected, into `x`. The rates at both ends must be known.
+    /// One polynomial of the whole step, by which events are found.
     pub fn dense(&mut self, theta: f64, x: &mut [f64]) {
+        self.prepare_dense();
+        self.method.dense(self.start.borrowed(), self.h, self.end.borrowed(), theta, x);
+    }
+
+    /// The same as exact as the tolerances ask, for a sample.
+    pub fn sample(&mut self, theta: f64, x: &mut [f64]) {
+        self.prepare_dense();
+        if !self.samples_are_ready {
+            self.prepare(|method, flow, start, h, end, scale| method.prepare_samples(flow, start, h, end, scale));
+            self.samples_are_ready = true;
+        }
+        self.method.sample(self.start.borrowed(), self.h, self.end.borrowed(), theta, x);
+    }
+
+    fn prepare_dense(&mut self) {
         if !self.dense_is_ready {
-            let before = self.statistics.rate_evaluations;
-            let h = self.h;
-            let (method, flow, start, end, _) = self.split();
-            method.prepare_dense(&flow, start.borrowed(), h, end.borrowed());
-            self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
+            self.prepare(|method, flow, start, h, end, _| method.prepare_dense(flow, start, h, end));
             self.dense_is_ready = true;
         }
-        self.method.dense(self.start.borrowed(), self.h, self.end.borrowed(), theta, x);
+    }
+
+    /// Prepares states inside of the step, whose rates are counted.
+    fn prepare(&mut self, by: impl FnOnce(&mut dyn Method, &Flow<'_>, PointRef<'_>, f64, PointRef<'_>, &Scale)) {
+        let (before, h) = (self.statistics.rate_evaluations, self.h);
+        let (method, flow, start, end, scale) = self.split();
+        by(method, &flow, start.borrowed(), h, end.borrowed(), scale);
+        self.statistics.dense_evaluations += self.statistics.rate_evaluations - before;
     }
 }
 

@@ -9,6 +9,7 @@ mod cfmr7;
 mod dop853;
 #[cfg(test)]
 mod estimate;
+mod halves;
 #[cfg(feature = "std")]
 mod lanes;
 #[cfg(test)]
@@ -24,6 +25,7 @@ use alloc::vec::Vec;
 pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
+use halves::Halves;
 
 use super::compensated::CompensatedSum;
 use super::dense::{FROM_ENDS, Polynomial};
@@ -48,7 +50,8 @@ pub type Bs5 = Explicit<BogackiShampine>;
 pub type Cfmr7 = Explicit<CalvoFrancoMontijanoRandez>;
 
 /// The method of order 8(5,3) of Dormand and Prince: twelve rates a step, three more if its dense output of order 7 is
-/// asked for.
+/// asked for, and 29 more where samples are asked for of a step beyond what is stable, inside of which that output errs
+/// by more than twenty times what a step may: that of the two halves of the step is taken then.
 pub type Dop853 = Explicit<DormandPrince>;
 
 /// The non-zero weights of a linear combination of stages: each with its stage, in ascending order.
@@ -73,6 +76,8 @@ pub trait Tableau {
     const B: Row = Self::A[Self::END];
     /// The difference to the embedded method; without the stage at the end of the step, which is known only after it.
     const ERROR: Row;
+    /// Another one of the same order, which counts where it is the larger of both; empty if there is none.
+    const OTHER_ERROR: Row = &[];
     /// A second embedded method of lower order; empty if there is none.
     const SECOND: Row = &[];
     /// A difference to an embedded method with the rate at the end of the step, which is looked at where the first one
@@ -82,6 +87,9 @@ pub trait Tableau {
     const IS_COMPENSATED: bool = false;
     /// The coefficients of the dense output from the fourth on: see `super::dense`.
     const DENSE: &'static [Row];
+    /// A stage of the dense output, and how many times its distance from that the output errs; none where the output is
+    /// as good as the ends of its step.
+    const DENSE_ERROR: Option<(usize, f64)> = None;
     /// What the coefficients of a diagonally implicit companion have more than [`Tableau::A`] below the diagonal,
     /// without those of the first stage; empty if there is none. It has the same state at the end of the step.
     const MORE: &'static [Row] = &[];
@@ -98,6 +106,8 @@ pub struct Explicit<T> {
     pub(super) stages: Stages<T, f64, SIDE_BY_SIDE>,
     /// The dense output's coefficients.
     polynomial: Polynomial<COEFFICIENTS>,
+    /// The same of the two halves of a step.
+    halves: Halves<T>,
     /// What rounding has kept from the states.
     sum: CompensatedSum<f64, SIDE_BY_SIDE>,
     /// States at the end of a step, as they are and moved by a difference, after their projection; the latter is also
@@ -114,6 +124,7 @@ impl<T: Tableau> Explicit<T> {
         Self {
             stages: Stages::new(0),
             polynomial: Polynomial::new(),
+            halves: Halves::new(0),
             sum: CompensatedSum::new(0),
             projected: [const { Vec::new() }; 2],
             arch: Arch::new(),
@@ -151,6 +162,21 @@ impl<T: Tableau> Explicit<T> {
         project(other);
         largest_of(end.len(), |i| (reached[i] - other[i]).abs() / scale.allowed_between(i, start.x[i], end[i]))
     }
+}
+
+/// Makes the dense output of a step of size `h` (s) whose stages are known up to its end.
+#[inline(never)]
+fn interpolate<T: Tableau>(
+    (stages, polynomial): (&mut Stages<T, f64, SIDE_BY_SIDE>, &mut Polynomial<COEFFICIENTS>),
+    flow: &Flow<'_>,
+    start: PointRef<'_>,
+    h: f64,
+    end: PointRef<'_>,
+) {
+    stages.set_stage(T::END, |rate| rate.copy_from_slice(end.rate));
+    stages.evaluate(flow, &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
+    let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
+    polynomial.set(start, h, end, |m, _, out| stages.write(row(m), h, out));
 }
 
 /// The norm of a step's error, of size `h` (s): h e1, with the largest e1 of the scaled differences to the embedded
@@ -192,6 +218,7 @@ impl<T: Tableau> Method for Explicit<T> {
     fn fit(&mut self, states: usize) {
         if self.stages.states() != states {
             (self.stages, self.sum) = (Stages::new(states), CompensatedSum::new(states));
+            self.halves = Halves::new(states);
             self.polynomial.fit(states);
             self.projected.iter_mut().for_each(|projected| projected.resize(states, 0.0));
         }
@@ -221,7 +248,7 @@ impl<T: Tableau> Method for Explicit<T> {
     ) -> Option<f64> {
         self.projected[0].copy_from_slice(end);
         project(&mut self.projected[0]);
-        let first = self.left(start, scale, end, project, |stages, i| h * stages.combine(T::ERROR, i));
+        let first = self.left(start, scale, end, project, |stages, i| h * stages.difference(i));
         if !T::SECOND.is_empty() {
             let difference =
                 |stages: &Stages<T, f64, SIDE_BY_SIDE>, i| stages.combine(T::B, i) - stages.combine(T::SECOND, i);
@@ -246,7 +273,7 @@ impl<T: Tableau> Method for Explicit<T> {
     }
 
     fn largest_error(&self, start: PointRef<'_>, scale: &Scale, end: &[f64]) -> usize {
-        let error = |i: usize| self.stages.combine(T::ERROR, i) / scale.allowed_between(i, start.x[i], end[i]);
+        let error = |i: usize| self.stages.difference(i) / scale.allowed_between(i, start.x[i], end[i]);
         index_of_largest(end.len(), |i| error(i).abs())
     }
 
@@ -255,10 +282,19 @@ impl<T: Tableau> Method for Explicit<T> {
     }
 
     fn prepare_dense(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>) {
-        self.stages.set_stage(T::END, |rate| rate.copy_from_slice(end.rate));
-        self.stages.evaluate(flow, &Begin::of(start, h), T::END + 1..T::A.len(), &mut ());
-        let row = |m: usize| T::DENSE.get(m).copied().unwrap_or_default();
-        self.polynomial.set(start, h, end, |m, _, out| self.stages.write(row(m), h, out));
+        interpolate((&mut self.stages, &mut self.polynomial), flow, start, h, end);
+    }
+
+    fn prepare_samples(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, end: PointRef<'_>, scale: &Scale) {
+        if T::DENSE_ERROR.is_some() {
+            self.halves.look((flow, scale, self.arch), [start, end], h, (&self.stages, &self.polynomial));
+        }
+    }
+
+    fn sample(&self, start: PointRef<'_>, h: f64, end: PointRef<'_>, theta: f64, x: &mut [f64]) {
+        if !self.halves.evaluate(self.arch, start, h, theta, x) {
+            self.dense(start, h, end, theta, x);
+        }
     }
 
     fn dense(&self, start: PointRef<'_>, _h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {

@@ -166,6 +166,14 @@ fn the_steps_and_their_companions_have_their_orders() {
 }
 
 #[test]
+fn the_other_companion_of_dop853_has_the_order_of_the_first() {
+    let (b, difference) = (full(DormandPrince::B), full(DormandPrince::OTHER_ERROR));
+    let embedded: Stages = core::array::from_fn(|i| b[i] - difference[i]);
+    assert_eq!(order::<DormandPrince>(&embedded, 1.0), 5);
+    assert!(DormandPrince::OTHER_ERROR.iter().all(|(stage, _)| *stage < DormandPrince::END));
+}
+
+#[test]
 fn the_late_companion_of_bs5_has_its_order() {
     let (b, difference) = (full(BogackiShampine::B), full(BogackiShampine::LATE));
     let embedded: Stages = core::array::from_fn(|i| b[i] + difference[i]);

@@ -84,6 +84,12 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
         combined(&self.k.groups()[i / W].1, row)[i % W]
     }
 
+    /// The difference of state `i` to the embedded method, per s.
+    pub fn difference(&self, i: usize) -> S {
+        let [error, other] = [T::ERROR, T::OTHER_ERROR].map(|row| self.combine(row, i));
+        if other.abs() > error.abs() { other } else { error }
+    }
+
     /// Writes the linear combinations of the stages for all states, times `h`.
     pub fn write(&self, row: Row, h: S, out: &mut [S]) {
         for ((_, k), out) in self.k.groups().iter().zip(out.chunks_mut(W)) {
@@ -189,6 +195,12 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
                 allowed[i] = scale.allowed_from(absolute[i], start[i], to[i]);
             }
             let mut errors = combined(k, T::ERROR);
+            if !T::OTHER_ERROR.is_empty() {
+                let others = combined(k, T::OTHER_ERROR);
+                for i in 0..W {
+                    errors[i] = others[i].abs().larger(errors[i].abs());
+                }
+            }
             for i in 0..W {
                 errors[i] = (errors[i] / allowed[i]).abs();
             }
