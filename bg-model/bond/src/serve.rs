@@ -1,7 +1,7 @@
 //! The page that compiles, from a folder of files, on this machine alone.
 //!
-//! In: the folder that `bond-page` writes, a port. Out: the address of a server that gives the files of that folder to a
-//! browser and nothing else: no folders in it, no files elsewhere.
+//! In: the folder that `bond-page` writes, a port. Out: the address of a server that gives the files of that folder to
+//! a browser and nothing else: no folders in it, no files elsewhere.
 
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
@@ -40,8 +40,8 @@ pub fn usual() -> PathBuf {
     program.parent().map_or_else(|| FOLDER.into(), |folder| folder.join(FOLDER))
 }
 
-/// Starts to answer, in a thread of its own, on a port of this machine that others do not reach; 0 is a free one. Gives the
-/// address of the page.
+/// Starts to answer, in a thread of its own, on a port of this machine that others do not reach; 0 is a free one. Gives
+/// the address of the page.
 ///
 /// # Errors
 /// [`ServeFault`].

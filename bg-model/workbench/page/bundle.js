@@ -1,5 +1,5 @@
-// Bundles scripts and styles of a page into its folder dist/, or with `--check` says whether dist/ is what the sources give.
-// In: esbuild's `build`, the page's folder, its entry points.
+// Bundles scripts and styles of a page into its folder dist/, or with `--check` says whether dist/ is what the sources
+// give. In: esbuild's `build`, the page's folder, its entry points.
 
 import { readFile, writeFile } from "node:fs/promises";
 

@@ -19,8 +19,8 @@ const model = async () => {
 };
 /** Whether the machine moves before anybody asks for it. */
 const plays = false;
-// Who tests the page or takes a picture of it waits until it is done: a frame whose document is open keeps it from being
-// loaded.
+// Who tests the page or takes a picture of it waits until it is done: a frame whose document is open keeps it from
+// being loaded.
 const hold = /^#(test$|still=)/.test(location.hash) ? document.body.appendChild(document.createElement("iframe")) : null;
 hold?.setAttribute("hidden", "");
 hold?.contentDocument.open();

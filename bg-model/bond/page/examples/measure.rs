@@ -1,5 +1,5 @@
-//! How long the page's answers take natively, interpreted: the same questions as those of `web/measure.js`, which asks the
-//! module.
+//! How long the page's answers take natively, interpreted: the same questions as those of `web/measure.js`, which asks
+//! the module.
 //!
 //!     cargo run --release -p bond-page --example measure
 

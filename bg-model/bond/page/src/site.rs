@@ -27,8 +27,8 @@ const EXAMPLES: &str = "examples.json";
 /// The report of the first example, with which the page opens before its compiler is there: the bytes that this gives.
 const FIRST: &str = "first.html";
 
-/// What is made small rather than fast, which is two fifths of the whole module and a tenth of the time of a compilation: it
-/// does not run once for each step.
+/// What is made small rather than fast, which is two fifths of the whole module and a tenth of the time of a
+/// compilation: it does not run once for each step.
 const SMALL: [&str; 10] = [
     "bg-analysis",
     "bg-compiler",

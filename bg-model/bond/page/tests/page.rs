@@ -1,5 +1,6 @@
-//! The page as its readers have it: the answers of its compiler are those of `bond`, in WebAssembly as they are natively;
-//! a browser that opens it from a static server sees the machine move, a fault at its place, and what a link holds.
+//! The page as its readers have it: the answers of its compiler are those of `bond`, in WebAssembly as they are
+//! natively; a browser that opens it from a static server sees the machine move, a fault at its place, and what a link
+//! holds.
 
 #[path = "../../../workbench/tests/pages/browser.rs"]
 mod browser;
@@ -48,7 +49,8 @@ fn questions() -> Vec<Value> {
     ]
 }
 
-/// The folder of the page, made once by the program; `None`, and a line that says why, where the target is not installed.
+/// The folder of the page, made once by the program; `None`, and a line that says why, where the target is not
+/// installed.
 fn site() -> Option<&'static Path> {
     static SITE: OnceLock<Option<PathBuf>> = OnceLock::new();
     let site = SITE.get_or_init(|| {

@@ -1,5 +1,5 @@
-// Bundles the page's script and style: `npm ci && npm run build` writes dist/; `npm run check` says whether dist/ is what
-// the sources give. The licences of what is inside are in dist/THIRD-PARTY.txt, to which the page has a link.
+// Bundles the page's script and style: `npm ci && npm run build` writes dist/; `npm run check` says whether dist/ is
+// what the sources give. The licences of what is inside are in dist/THIRD-PARTY.txt, to which the page has a link.
 
 import { build } from "esbuild";
 import { bundle } from "../../../workbench/page/bundle.js";

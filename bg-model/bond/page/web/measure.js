@@ -1,5 +1,5 @@
-// How long the module's answers take in node, and how large it is: `node measure.js FOLDER`, the folder of the page. The
-// first time each function is compiled as it is called, later the engine has better code.
+// How long the module's answers take in node, and how large it is: `node measure.js FOLDER`, the folder of the page.
+// The first time each function is compiled as it is called, later the engine has better code.
 
 import { readFileSync } from "node:fs";
 import { brotliCompressSync, constants, gzipSync } from "node:zlib";

@@ -71,7 +71,8 @@ async function start() {
   const mark = player(section("player"), clock, data.events);
   for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
   for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
-  await painted();
+  // Where the machine is to move at once, that comes first.
+  if (!plays) await painted();
   const view = data.animation ? motion(section("machine"), data.animation, clock) : null;
   if (data.modes && view) modes(section("modes"), data.modes, view, clock);
   if (plays) {

@@ -1,6 +1,6 @@
-// The sliders of a live page.
-// In: the settings that bg-workbench's `page/settings.rs` writes, what starts a worker with the model, what shows an answer. Out: a panel;
-// a value that is changed there runs the model again, and the page shows that run.
+// The sliders of a live page. In: the settings that bg-workbench's `page/settings.rs` writes, what starts a worker with
+// the model, what shows an answer. Out: a panel; a value that is changed there runs the model again, and the page shows
+// that run.
 
 import { element, number } from "./page.js";
 import { rangeOf, rounded } from "./ranges.js";

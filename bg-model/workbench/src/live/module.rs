@@ -19,7 +19,8 @@ const PROFILE: [(&str, &str); 4] = [
     ("CARGO_PROFILE_RELEASE_STRIP", "true"),
 ];
 
-/// This repository's own release builds do without optimisation where a module does not; settings that come after it win.
+/// This repository's own release builds do without optimisation where a module does not; settings that come after it
+/// win.
 const WORKBENCH: &str = "profile.release.package.bg-workbench.opt-level = 3";
 
 /// Where the module is from.

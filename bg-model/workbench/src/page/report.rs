@@ -77,8 +77,8 @@ pub fn page(report: &Report<'_>) -> String {
     put_together(report, live.map(|live| &live.order), &style, &start, texts)
 }
 
-/// The page of a run that another page has made, in a frame there: that page's folder has style and script, `report.css`,
-/// `beside.js` and `report.js`, and that page itself runs the model again.
+/// The page of a run that another page has made, in a frame there: that page's folder has style and script,
+/// `report.css`, `beside.js` and `report.js`, and that page itself runs the model again.
 #[must_use]
 pub fn page_beside(report: &Report<'_>, order: &Order) -> String {
     let text = |(id, json): &(&str, String)| {
@@ -90,8 +90,8 @@ pub fn page_beside(report: &Report<'_>, order: &Order) -> String {
     put_together(report, Some(order), style, start, |texts| texts.iter().map(text).collect())
 }
 
-/// The page with this style, these scripts that start it, and the JSON texts that it reads, as `texts` writes them; `order` is what made the
-/// run, where the page can run its model again.
+/// The page with this style, these scripts that start it, and the JSON texts that it reads, as `texts` writes them;
+/// `order` is what made the run, where the page can run its model again.
 fn put_together(
     report: &Report<'_>,
     order: Option<&Order>,

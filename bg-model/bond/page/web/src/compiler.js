@@ -1,7 +1,7 @@
-// The worker: the compiler and the models run here, so that typing never waits.
-// In: the compiled module, then questions `{ number, question, fresh }`, JSON texts of bond-page's `answers`. Out: for each
-// `{ number, answer, milliseconds }` or `{ number, fault }`. A fresh instance answers a fresh question: what the compiler
-// remembers of a text ends with the instance.
+// The worker: the compiler and the models run here, so that typing never waits. In: the compiled module, then questions
+// `{ number, question, fresh }`, JSON texts of bond-page's `answers`. Out: for each `{ number, answer, milliseconds }`
+// or `{ number, fault }`. A fresh instance answers a fresh question: what the compiler remembers of a text ends with
+// the instance.
 
 import { answering } from "../../../../workbench/page/src/module.js";
 

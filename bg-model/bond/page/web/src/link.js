@@ -1,6 +1,5 @@
-// A link that holds the text.
-// In: what is shown. Out: what stands after `#` of the address; and back. A text that is an example is named, another one is
-// deflated (RFC 1951), in base64url (RFC 4648).
+// A link that holds the text. In: what is shown. Out: what stands after `#` of the address; and back. A text that is an
+// example is named, another one is deflated (RFC 1951), in base64url (RFC 4648).
 
 /** The largest text that a link is read for, characters: `bond` reads no larger one. */
 const LARGEST = 8 << 20;

@@ -1,6 +1,5 @@
-// The page that compiles.
-// In: the files beside it, what stands after `#` of the address. Out: the page. Method: one worker compiles the model that is
-// shown and runs it, another one looks for faults in all models of the text.
+// The page that compiles. In: the files beside it, what stands after `#` of the address. Out: the page. Method: one
+// worker compiles the model that is shown and runs it, another one looks for faults in all models of the text.
 
 import "./page.css";
 import { Editor, placed } from "./editor.js";
@@ -67,14 +66,16 @@ class Page {
   }
 
   async #open(words, isThere = false) {
+    let unreadable = null;
     try {
       this.shown = await read(words, this.examples);
     } catch (fault) {
       this.shown = await read("", this.examples);
-      this.#tell(`The text in the link cannot be read: ${fault.message}. This is the first example.`, true);
+      unreadable = `The text in the link cannot be read: ${fault.message}. This is the first example.`;
     }
     this.editor.text = this.shown.text;
     await this.#update(isThere);
+    if (unreadable !== null) this.#tell(unreadable, true);
   }
 
   /** The reader has typed. */
@@ -113,7 +114,9 @@ class Page {
     try {
       const isClean = await this.#compile(version);
       if (isThere) this.#says.run = ", run before when this page was built";
-      const check = isClean === null ? null : this.#check(version);
+      const check = isClean === null ? null : this.#check(version, isClean);
+      // A report that fails is told below; a check that fails after that is not told as well.
+      check?.catch(() => {});
       if (isClean && !isThere) await this.#report(version);
       await check;
       if (isClean) await this.#measure(version);
@@ -170,18 +173,18 @@ class Page {
       return;
     }
     this.#says.run = `, run in ${lasting(milliseconds)}`;
-    this.#tell();
+    if (this.faults.length === 0) this.#tell();
     await place(answer.page);
   }
 
   /** Looks for faults in all models: the one that is shown may have none. */
-  async #check(version) {
+  async #check(version, isClean) {
     const { answer } = await this.checker.ask({ ask: "check", text: this.shown.text }, { fresh: true });
-    if (version === this.#version) this.#found(answer.faults);
+    if (version === this.#version) this.#found(answer.faults, isClean);
   }
 
-  /** Shows the faults. */
-  #found(found) {
+  /** Shows the faults; `isElsewhere` says that the model which is shown has none. */
+  #found(found, isElsewhere = false) {
     this.faults = placed(this.editor.text, found);
     this.editor.mark(this.faults);
     const one = ({ line, column, code, message, help, from, to }) => {
@@ -195,6 +198,10 @@ class Page {
     const count = this.faults.length === 1 ? "a fault" : `${this.faults.length} faults`;
     document.querySelector('[data-tab="text"]').textContent = this.faults.length > 0 ? `Text: ${count}` : "Text";
     if (this.faults.length === 0) return;
+    if (isElsewhere) {
+      this.#tell(`The text has ${count}, but not in the model that is shown.`, true);
+      return;
+    }
     const rest = part("report").querySelector("iframe") ? " The machine is that of the text before." : "";
     part("report").classList.toggle("old", rest !== "");
     if (rest === "") part("wait").textContent = `The text has ${count}.`;
@@ -207,13 +214,17 @@ class Page {
       const { answer, milliseconds } = await this.runner.ask({ ask: "rate", count });
       return answer.fault === undefined ? milliseconds : null;
     };
+    // The first answer is that of an engine which is not warm; each has a model to be made beside its rates.
+    await time(1);
+    const made = await time(1);
     let count = 100;
-    for (let spent = await time(count); spent !== null && spent < MEASURED / 3 && count < 1e7; spent = await time(count)) {
-      count = Math.ceil(count * Math.min(MEASURED / Math.max(spent, 0.1), 100));
+    let spent = await time(count);
+    while (spent !== null && spent - made < MEASURED / 2 && count < 1e7) {
+      count = Math.ceil(count * Math.min(Math.max(MEASURED / Math.max(spent - made, 0.1), 2), 100));
+      spent = await time(count);
     }
-    const spent = await time(count);
     if (spent === null || version !== this.#version) return;
-    this.rate = spent / count;
+    this.rate = (spent - made) / count;
     this.#says.rate = `; the rate takes ${lasting(this.rate)} each time, interpreted`;
     if (this.faults.length === 0) this.#tell();
   }

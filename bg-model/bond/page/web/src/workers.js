@@ -1,5 +1,5 @@
-// The compiler in a worker, from the outside.
-// In: the compiled module, as a promise. Out: answers to questions, as promises; a worker that is stopped is replaced by another one.
+// The compiler in a worker, from the outside. In: the compiled module, as a promise. Out: answers to questions, as
+// promises; a worker that is stopped is replaced by another one.
 
 /** After so long a question is given up, milliseconds. */
 const PATIENCE = 60_000;
