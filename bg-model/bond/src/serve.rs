@@ -53,7 +53,13 @@ pub fn start(folder: &Path, port: u16) -> Result<String, ServeFault> {
     let server = server.map_err(|fault| ServeFault::Port { port, fault: fault.to_string() })?;
     let address = format!("http://{}/", server.server_addr());
     let folder = folder.to_owned();
-    std::thread::spawn(move || server.incoming_requests().for_each(|request| answer(request, &folder)));
+    std::thread::spawn(move || {
+        // A browser may leave an answer unread for a while, so each has a thread.
+        for request in server.incoming_requests() {
+            let folder = folder.clone();
+            std::thread::spawn(move || answer(request, &folder));
+        }
+    });
     Ok(address)
 }
 

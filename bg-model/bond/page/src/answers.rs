@@ -18,16 +18,19 @@ use bond_graph::maker::Loaded;
 use bond_graph::text::{DEEPEST, Text, Wanted, graphs_alone};
 use serde::{Deserialize, Serialize};
 
-/// What the page asks.
+/// What the page asks. What is known of a text is answered as `{ "faults": [..], "graphs": [{ "name": .., "scenes": [{
+/// "name": .., "about": .. }] }], "chosen": [GRAPH, SCENE], "inputs": [{ "name": .., "unit": .. }] }`: faults as `bond
+/// check --json` has them, and then no graphs; `chosen` is `null` and there are no inputs where nothing was compiled to
+/// be run.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "ask", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Question {
-    /// What is wrong with a text, all its models looked at: [`Checked`].
+    /// What is wrong with a text, all its models looked at: what is known of it.
     Check {
         /// The text.
         text: String,
     },
-    /// To compile one model of a text, which is remembered: [`Checked`] with what was chosen.
+    /// To compile one model of a text, which is remembered: what is known of it, and what was chosen.
     Compile {
         /// The text.
         text: String,
@@ -36,15 +39,16 @@ pub enum Question {
         /// The scene by its name on the command line; the one that stands for the graph unless it is said or there.
         scene: Option<String>,
     },
-    /// The report of a run of what was compiled, in HTML for a frame of the page: `{ "page": .. }` or `{ "fault": .. }`.
+    /// The report of a run of what was compiled, in HTML for a frame of the page: `{ "page": .. }`, or
+    /// `{ "fault": .. }`.
     Report(Run),
     /// Another run of it: what [`live::answer`] answers.
     Run {
         /// An [`Order`] as JSON.
         order: String,
     },
-    /// To evaluate the rate of what was compiled at its start, again and again: `{ "states": .. }` or `{ "fault": .. }`. Who
-    /// asks has a clock.
+    /// To evaluate the rate of what was compiled at its start, again and again: `{ "states": .. }` or `{ "fault": ..
+    /// }`. Who asks has a clock.
     Rate {
         /// How often.
         count: usize,
