@@ -51,8 +51,9 @@ async function found(page, motion, verdict) {
   const { scrollWidth, clientWidth } = document.documentElement;
   verdict.overflow = scrollWidth - clientWidth;
 
-  // A fault, as it is typed.
+  // A fault, as it is typed, after letters of two and of four bytes.
   const before = performance.now();
+  retype(page.editor, "Angle at", "\u00c4ngle \u{1f600} at");
   retype(page.editor, "angle: rad = 0.5", "angle: radd = 0.5");
   const mark = await until("a fault", () => document.querySelector(".cm-lintRange-error"));
   verdict.fault_ms = performance.now() - before;
