@@ -10,7 +10,7 @@ use bg_compiler::fault::near_miss;
 use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
 
-use crate::watch::Served;
+use crate::served::Served;
 
 /// What is asked for.
 #[derive(Debug, PartialEq, Eq)]
@@ -52,6 +52,15 @@ pub enum Own {
         /// Options of `report`
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         options: Vec<OsString>,
+    },
+    /// Serves a page for the browser, on this machine alone, in which texts are written, compiled and run
+    Serve {
+        #[command(flatten)]
+        served: Served,
+        /// The folder of the page, as `cargo run --release -p bond-page -- FOLDER` writes it; `bond-site` beside this program unless
+        /// given
+        #[arg(long, value_name = "FOLDER")]
+        page: Option<PathBuf>,
     },
     /// Writes a first mechanism
     New {
@@ -263,6 +272,8 @@ mod tests {
             let (served, options) = (Served { port: 80, no_open: true }, vec!["--set".into(), "b=1".into()]);
             assert_eq!(of(line), Ok(Asked::Own(Own::Watch { served, file: "a.bond".into(), options })));
         }
+        let (served, page) = (Served { port: 80, no_open: false }, Some("site".into()));
+        assert_eq!(of("serve --port 80 --page site"), Ok(Asked::Own(Own::Serve { served, page })));
         assert_eq!(of("fmt -"), Ok(Asked::Own(Own::Fmt { files: vec!["-".into()], check: false })));
     }
 

@@ -3,16 +3,19 @@
 //! In: a text and its faults. Out: each with its code, its place in the text and what to do, as rustc shows its own;
 //! the same as JSON, one line each.
 
+#[cfg(not(target_arch = "wasm32"))]
 use std::io::{IsTerminal, stderr};
 use std::path::Path;
 
+#[cfg(not(target_arch = "wasm32"))]
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use bg_loaded::Fault;
 use serde::Serialize;
 
-use crate::file::Text;
+use crate::text::Text;
 
 /// Shows the faults on the error output.
+#[cfg(not(target_arch = "wasm32"))]
 pub fn tell(text: &Text, faults: &[Fault]) {
     let renderer = if stderr().is_terminal() { Renderer::styled() } else { Renderer::plain() };
     for fault in faults {
@@ -23,11 +26,13 @@ pub fn tell(text: &Text, faults: &[Fault]) {
 }
 
 /// A fault as text: what is wrong, its place, what to do.
+#[cfg(not(target_arch = "wasm32"))]
 #[must_use]
 pub fn plain(text: &Text, fault: &Fault) -> String {
     shown(text, fault, &Renderer::plain())
 }
 
+#[cfg(not(target_arch = "wasm32"))]
 fn shown(text: &Text, fault: &Fault, renderer: &Renderer) -> String {
     let (path, source) = place(text, fault);
     let title = Level::ERROR.primary_title(&fault.message).id(fault.code);
@@ -49,15 +54,32 @@ pub fn place<'a>(text: &'a Text, fault: &'a Fault) -> (&'a Path, &'a str) {
 }
 
 /// A fault for programs.
-#[derive(Serialize)]
-struct Line<'a> {
-    file: String,
-    line: usize,
-    column: usize,
-    bytes: [usize; 2],
-    code: &'static str,
-    message: &'a str,
-    help: &'a str,
+#[derive(Debug, Serialize)]
+pub struct Line<'a> {
+    /// The file that it is in.
+    pub file: String,
+    /// The line of its first character, from 1.
+    pub line: usize,
+    /// The column of that, from 1, in characters.
+    pub column: usize,
+    /// The bytes of the file that it is about: the first, and the one after the last.
+    pub bytes: [usize; 2],
+    /// The stable code, such as `BG0301`.
+    pub code: &'static str,
+    /// What is wrong.
+    pub message: &'a str,
+    /// What to do about it; may be empty.
+    pub help: &'a str,
+}
+
+impl<'a> Line<'a> {
+    /// A fault of a text.
+    #[must_use]
+    pub fn of(text: &Text, fault: &'a Fault) -> Self {
+        let Fault { code, message, help, place: [line, column], bytes, .. } = fault;
+        let file = place(text, fault).0.display().to_string();
+        Self { file, line: *line, column: *column, bytes: [bytes.start, bytes.end], code, message, help }
+    }
 }
 
 /// The faults, each a line of JSON.
@@ -66,13 +88,7 @@ struct Line<'a> {
 /// Never: texts and numbers can be written.
 #[must_use]
 pub fn json(text: &Text, faults: &[Fault]) -> String {
-    let line = |fault: &Fault| {
-        let Fault { code, message, help, place: [line, column], bytes, .. } = fault;
-        let file = place(text, fault).0.display().to_string();
-        let bytes = [bytes.start, bytes.end];
-        let line = Line { file, line: *line, column: *column, bytes, code, message, help };
-        serde_json::to_string(&line).expect("texts and numbers") + "\n"
-    };
+    let line = |fault| serde_json::to_string(&Line::of(text, fault)).expect("texts and numbers") + "\n";
     faults.iter().map(line).collect()
 }
 

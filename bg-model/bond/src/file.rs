@@ -11,15 +11,15 @@ use std::time::Duration;
 
 use bg_compiler::source::syntax::files::gather;
 use bg_import::{Format, Options, import_file};
-use bg_loaded::{Counted, Fault, Graph, Opened, load_file};
+use bg_loaded::{Fault, Graph, Opened, load_file};
 use bg_workbench::files::console;
-use bg_workbench::scenes::in_small_letters;
 use thiserror::Error;
+
+use crate::text::DEEPEST;
+pub use crate::text::{Text, Wanted};
 
 /// The largest file that is read, bytes: a mechanism of a thousand bodies has a tenth of it.
 const LARGEST: u64 = 8 << 20;
-/// Brackets in brackets: a text has some ten.
-const DEEPEST: usize = 200;
 /// How often a file is read that changes meanwhile, and the pause before it is read again.
 const ATTEMPTS: usize = 5;
 const PAUSE: Duration = Duration::from_millis(20);
@@ -60,15 +60,6 @@ pub enum FileFault {
         /// What is wrong with it.
         fault: String,
     },
-}
-
-/// A text with the path of its file.
-#[derive(Clone, Debug)]
-pub struct Text {
-    /// The path, for messages; files that the text uses are sought from its folder.
-    pub path: PathBuf,
-    /// The text.
-    pub text: String,
 }
 
 /// The text of a file.
@@ -114,20 +105,6 @@ impl Text {
     /// The text, if a reader can follow it.
     fn checked(self) -> Result<Self, FileFault> {
         if self.is_deep() { Err(FileFault::Deep(self.path)) } else { Ok(self) }
-    }
-
-    /// Whether brackets are in brackets more often than a reader follows.
-    #[must_use]
-    pub fn is_deep(&self) -> bool {
-        let mut depth = 0_usize;
-        self.text.chars().any(|c| {
-            match c {
-                '(' | '[' | '{' => depth += 1,
-                ')' | ']' | '}' => depth = depth.saturating_sub(1),
-                _ => {}
-            }
-            depth > DEEPEST
-        })
     }
 }
 
@@ -213,16 +190,6 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
     reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }
 
-/// What is wanted of a text.
-#[derive(Clone, Debug, Default)]
-pub struct Wanted {
-    /// Where one scene alone is wanted beside the one that stands for the graph, its name on the command line; only
-    /// what runs it is made.
-    pub scene: Option<String>,
-    /// The most statements of a graph with its repetitions and parts written out; none: 20000.
-    pub most: Option<usize>,
-}
-
 /// The graphs of a text.
 ///
 /// # Errors
@@ -231,12 +198,10 @@ pub struct Wanted {
 /// # Panics
 /// The machine has no memory for a thread.
 pub fn graphs(text: &Text, wanted: &Wanted) -> Result<Vec<Graph>, Vec<Fault>> {
-    let (Text { path, text }, Wanted { scene, most }) = (text.clone(), wanted.clone());
-    let counted = if scene.is_some() { Counted::Made } else { Counted::All };
-    let is_wanted = move |name: &str| scene.as_ref().is_none_or(|scene| in_small_letters(name) == *scene);
+    let (Text { path, text }, wanted) = (text.clone(), wanted.clone());
     let compiler = std::thread::Builder::new().stack_size(STACK).spawn(move || {
         let first = Opened { file: itself(&path), text };
-        load_file(&path, first, &open, bg_loaded::Wanted { scene: &is_wanted, counted, most })
+        wanted.told(|wanted| load_file(&path, first, &open, wanted))
     });
     compiler.expect("a thread can be started").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
 }

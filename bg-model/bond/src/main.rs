@@ -7,22 +7,26 @@ mod arguments;
 mod check;
 mod fmt;
 mod new;
+mod served;
 mod watch;
 
 use std::fmt::Display;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use arguments::{Asked, Call, Own};
 use bg_loaded::BackEnd;
 use bg_workbench::Program;
 use bg_workbench::files::console;
-use bond_graph::{faults, file, maker};
+use bond_graph::{faults, file, maker, serve};
+use served::Served;
 
 fn main() -> ExitCode {
     match arguments::asked(std::env::args_os()) {
         Ok(Asked::Own(Own::Check { files, json, most })) => check::check(&files, json, most),
         Ok(Asked::Own(Own::Fmt { files, check })) => fmt::fmt(&files, check),
         Ok(Asked::Own(Own::Watch { served, file, options })) => watch::watch(&file, &options, &served),
+        Ok(Asked::Own(Own::Serve { served, page })) => serve_page(page, &served).unwrap_or_else(refused),
         Ok(Asked::Own(Own::New { name })) => new::new(&name).map_or_else(refused, |()| ExitCode::SUCCESS),
         Ok(Asked::Program(call)) => program(call),
         Err(fault) if fault.use_stderr() => refused(console::in_one_line(&fault.render().to_string())),
@@ -35,6 +39,16 @@ fn main() -> ExitCode {
 fn refused(fault: impl Display) -> ExitCode {
     console::complain(&fault);
     ExitCode::from(2)
+}
+
+/// Serves the page that compiles until the process is ended.
+fn serve_page(folder: Option<PathBuf>, served: &Served) -> Result<ExitCode, String> {
+    let folder = folder.unwrap_or_else(serve::usual);
+    let address = serve::start(&folder, served.port).map_err(|fault| fault.to_string())?;
+    served.show(&address, "the page that compiles")?;
+    loop {
+        std::thread::park();
+    }
 }
 
 /// Hands a command of the workbench to the program of a graph.

@@ -60,6 +60,10 @@ impl Maker for Loaded {
         self.graph.is_literal
     }
 
+    fn has(&self, model: usize) -> bool {
+        self.graph.models[model].blueprint.is_some()
+    }
+
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError> {
         let model = Interpreted::new(self.blueprint(model), own, inputs)?.by(self.back_end);
         Ok(Box::new(Studied::new(model)))

@@ -337,7 +337,7 @@ fn derivatives_are_found_without_rustc() {
     assert!((last[1] - expected).abs() < 1e-8, "{csv}");
 }
 
-/// `bond watch` on a file of a folder; it is ended where this is dropped.
+/// A command of `bond` that serves a page of a folder; it is ended where this is dropped.
 struct Watch {
     child: Child,
     /// `127.0.0.1:PORT`
@@ -346,9 +346,14 @@ struct Watch {
 }
 
 impl Watch {
+    /// `bond watch` on a file.
     fn of(folder: &Path, line: &str) -> Self {
+        Self::serving(folder, &format!("watch {line} --no-open --t-end 0.1"))
+    }
+
+    fn serving(folder: &Path, line: &str) -> Self {
         let mut command = Command::new(env!("CARGO_BIN_EXE_bond"));
-        command.current_dir(folder).arg("watch").args(line.split_whitespace()).args(["--no-open", "--t-end", "0.1"]);
+        command.current_dir(folder).args(line.split_whitespace());
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the program starts");
         let mut told = String::new();
         BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut told).expect("a line");
@@ -356,13 +361,19 @@ impl Watch {
         Self { address: address.to_owned(), child, number: u64::MAX }
     }
 
+    /// What stands at an address.
     fn get(&self, path: &str) -> String {
+        self.answer(path).split_once("\r\n\r\n").expect("a head and a body").1.to_owned()
+    }
+
+    /// The same with its head.
+    fn answer(&self, path: &str) -> String {
         let mut stream = TcpStream::connect(&self.address).expect("a server");
         stream.set_read_timeout(Some(Duration::from_secs(60))).expect("a time");
         write!(stream, "GET {path} HTTP/1.0\r\n\r\n").expect("it reads");
         let mut answer = String::new();
         stream.read_to_string(&mut answer).expect("an answer");
-        answer.split_once("\r\n\r\n").expect("a head and a body").1.to_owned()
+        answer
     }
 
     /// The next state in which nothing is being made.
@@ -420,4 +431,39 @@ fn what_cannot_be_watched_is_said_at_once() {
     let watch = Watch::of(folder.path(), "swing.bond");
     let port = watch.address.rsplit(':').next().expect("a port");
     assert!(refused(folder.path(), &format!("watch --port {port} swing.bond --no-open"), 2).contains("--port"));
+}
+
+#[test]
+fn the_page_that_compiles_is_served_from_its_folder_and_from_nowhere_else() {
+    let folder = folder();
+    std::fs::create_dir(folder.path().join("site")).expect("a folder");
+    for (name, text) in
+        [("site/index.html", "<h1>"), ("site/bond.wasm", "module"), ("site/.run", "kept"), ("secret", "s")]
+    {
+        write(&folder, name, text);
+    }
+    let page = Watch::serving(folder.path(), "serve --page site --no-open");
+    for (path, kind, text) in [
+        ("/", "text/html; charset=utf-8", "<h1>"),
+        ("/?test", "text/html; charset=utf-8", "<h1>"),
+        ("/bond.wasm", "application/wasm", "module"),
+    ] {
+        let answer = page.answer(path);
+        assert!(answer.contains(" 200 ") && answer.contains(&format!("Content-Type: {kind}\r\n")), "{path}: {answer}");
+        assert!(answer.ends_with(&format!("\r\n\r\n{text}")), "{path}: {answer}");
+    }
+    for path in ["/secret", "/../secret", "/%2e%2e/secret", "/.run", "/site/index.html", "//secret"] {
+        assert!(page.answer(path).contains(" 404 "), "{path}");
+    }
+}
+
+#[test]
+fn what_cannot_be_served_says_how_the_page_is_built() {
+    let folder = folder();
+    let told = refused(folder.path(), "serve --page nowhere --no-open", 2);
+    assert!(
+        told.contains("no page in nowhere") && told.contains("cargo run --release -p bond-page -- FOLDER"),
+        "{told}"
+    );
+    assert!(refused(folder.path(), "serve --no-open", 2).contains("bond-site"));
 }

@@ -7,8 +7,20 @@ const inflated = (id) => {
 };
 const unpacked = (id) => inflated(id).text();
 const unpackedBytes = (id) => inflated(id).arrayBuffer();
-// Who tests the page or takes a picture of it waits until it is done: a frame whose document is open keeps it from being
-// loaded.
+/** What starts a worker with the model of a live page. */
+const model = async () => {
+  const [script, bytes] = await Promise.all([unpacked("worker"), unpackedBytes("module")]);
+  const address = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
+  return () => {
+    const worker = new Worker(address);
+    worker.postMessage(bytes);
+    return worker;
+  };
+};
+/** Whether the machine moves before anybody asks for it. */
+const plays = false;
+// Who tests the page or takes a picture of it waits until it is done: a frame whose document is open keeps it from
+// being loaded.
 const hold = /^#(test$|still=)/.test(location.hash) ? document.body.appendChild(document.createElement("iframe")) : null;
 hold?.setAttribute("hidden", "");
 hold?.contentDocument.open();

@@ -32,7 +32,7 @@ impl<Me: Scenes> Default for Compiled<Me> {
 
 /// The model that a page has inside, by its number: `BG_LIVE_MODEL` says it at the build.
 #[cfg(target_arch = "wasm32")]
-pub(crate) const MODEL: usize = match option_env!("BG_LIVE_MODEL") {
+const MODEL: usize = match option_env!("BG_LIVE_MODEL") {
     Some(text) => match usize::from_str_radix(text, 10) {
         Ok(index) => index,
         Err(_) => panic!("BG_LIVE_MODEL is the number of a scene"),
@@ -47,6 +47,11 @@ impl<Me: Scenes> Maker for Compiled<Me> {
 
     fn is_literal(&self) -> bool {
         Me::LITERAL
+    }
+
+    #[cfg(target_arch = "wasm32")]
+    fn has(&self, model: usize) -> bool {
+        model == MODEL
     }
 
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError> {

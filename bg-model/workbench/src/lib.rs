@@ -88,8 +88,6 @@ pub mod command;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod compare;
 #[cfg(not(target_arch = "wasm32"))]
-pub mod figures;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod files;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod golden;
@@ -98,13 +96,7 @@ pub mod gradient;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod identify;
 #[cfg(not(target_arch = "wasm32"))]
-pub mod markup;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod output;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod overview;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod picture;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod samples;
 #[cfg(not(target_arch = "wasm32"))]
@@ -118,13 +110,17 @@ pub mod tables;
 
 pub mod compiled;
 pub mod extras;
+pub mod figures;
 pub mod inputs;
 pub use bg_analysis::linear;
 pub mod live;
 pub mod machine;
 pub mod maker;
+pub mod markup;
+pub mod overview;
 pub mod page;
 pub mod parameters;
+pub mod picture;
 pub mod precision;
 pub mod program;
 mod quantities;

@@ -19,6 +19,11 @@ pub trait Maker: Send + Sync {
     /// Whether the first model is the graph as it stands, not a scene of it.
     fn is_literal(&self) -> bool;
 
+    /// Whether the model of this number can be made; one that was not compiled cannot.
+    fn has(&self, _model: usize) -> bool {
+        true
+    }
+
     /// The model of this number in [`Maker::models`], with these values of its own parameters and inputs, each in the
     /// order of its description; inputs that are missing are 0.
     ///

@@ -6,10 +6,10 @@ use std::collections::BTreeMap;
 
 use bg_model::description::{BondEnd, Description};
 use bg_picture::{Bond, End, Graph, Node, Part};
-use clap::ValueEnum;
 
 /// How much of a graph is drawn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(not(target_arch = "wasm32"), derive(clap::ValueEnum))]
 pub enum Level {
     /// One box for each body, joint, spring, contact and drive
     Words,

@@ -109,7 +109,7 @@ pub struct Summary {
     /// The longest time between two samples, s: ranges and peaks are those of samples.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_step_s: Option<f64>,
-    /// Time on the wall clock, s.
+    /// Time on the wall clock, s; zero where there is none.
     pub wall_time_s: f64,
     /// Simulated time over wall time.
     pub times_real_time: f64,
@@ -254,8 +254,11 @@ impl Summary {
             lines.push(("Jacobians", format!("{jacobians}, {factorisations} factorisations{pivoted}")));
         }
         lines.push(("switching events", self.events.to_string()));
-        let wall = format!("{:.3} s, {:.1} times faster than real time", self.wall_time_s, self.times_real_time);
-        lines.push(("wall time", wall));
+        // Zero where no clock was looked at.
+        if self.wall_time_s > 0.0 {
+            let wall = format!("{:.3} s, {:.1} times faster than real time", self.wall_time_s, self.times_real_time);
+            lines.push(("wall time", wall));
+        }
         if let Some(step) = self.sample_step_s {
             let text = format!("at most {} s apart; ranges and peaks are those of samples", short(step));
             lines.push(("samples", text));

@@ -21,19 +21,10 @@ use changes::Changes;
 use report::{Ended, Making};
 use server::Shared;
 
+use crate::served::Served;
+
 /// Between two looks at the files.
 const LOOK: Duration = Duration::from_millis(50);
-
-/// Where the page is served.
-#[derive(Debug, PartialEq, Eq, clap::Args)]
-pub struct Served {
-    /// The port of the page; a free one unless given
-    #[arg(long, value_name = "NUMBER", default_value_t = 0, hide_default_value = true)]
-    pub port: u16,
-    /// Opens no browser
-    #[arg(long)]
-    pub no_open: bool,
-}
 
 /// Serves the report of a file until the process is ended.
 pub fn watch(path: &Path, options: &[OsString], served: &Served) -> ExitCode {
@@ -46,12 +37,8 @@ pub fn watch(path: &Path, options: &[OsString], served: &Served) -> ExitCode {
         Ok(address) => address,
         Err(fault) => return refused(&format!("--port {}: {fault}", served.port)),
     };
-    let told = console::print(&format!("{address} shows {}; Ctrl-C ends\n", path.display()));
-    if let Err(fault) = told {
-        return refused(&fault.to_string());
-    }
-    if !served.no_open && open::that_detached(&address).is_err() {
-        console::note(&format!("no browser was found; open {address}"));
+    if let Err(fault) = served.show(&address, &path.display().to_string()) {
+        return refused(&fault);
     }
     follow(path, options, &shared)
 }

@@ -1,7 +1,6 @@
 //! The gallery of the workbench's examples, from their head comments: `docs/gallery.md` with pictures, or a folder of
 //! pages.
 
-mod example;
 mod programs;
 mod texts;
 
@@ -11,7 +10,7 @@ use std::process::ExitCode;
 use bg_workbench::figures::compact::compact;
 use clap::Parser;
 
-use example::Example;
+use bg_gallery::example::Example;
 use programs::Programs;
 
 /// Makes docs/gallery.md with its pictures, or a folder of pages in which the examples move

@@ -4,7 +4,7 @@
 
 use bg_workbench::markup::{escaped, with_code};
 
-use crate::example::Example;
+use bg_gallery::example::Example;
 
 /// Files of an example's pictures, without the folder.
 pub fn graph(example: &Example) -> String {

@@ -21,7 +21,7 @@ import { texts } from "./texts.js";
 import { trial } from "./trial.js";
 import { Tuning } from "./tuning.js";
 
-/* global unpacked, unpackedBytes */
+/* global model, plays, unpacked */
 
 const faults = [];
 window.addEventListener("error", ({ message }) => faults.push(message));
@@ -63,8 +63,7 @@ async function tuning({ mark, view, picture }) {
     picture?.update(answer.bonds);
     texts(answer, milliseconds, made.values, defaults);
   };
-  const [script, bytes] = await Promise.all([unpacked("worker"), unpackedBytes("module")]);
-  const made = new Tuning(section("controls"), settings, script, bytes, show);
+  const made = new Tuning(section("controls"), settings, await model(), show);
   return made;
 }
 
@@ -72,9 +71,18 @@ async function start() {
   const mark = player(section("player"), clock, data.events);
   for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
   for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
-  await painted();
+  // Where the machine is to move at once, that comes first.
+  if (!plays) await painted();
   const view = data.animation ? motion(section("machine"), data.animation, clock) : null;
   if (data.modes && view) modes(section("modes"), data.modes, view, clock);
+  if (plays) {
+    clock.play();
+    // A page around this one waits with what would keep the machine from moving.
+    requestAnimationFrame(() => {
+      performance.mark("moving");
+      dispatchEvent(new Event("moving"));
+    });
+  }
   const bonds = JSON.parse(await unpacked("bonds"));
   const picture = section("picture") ? graph(section("picture"), bonds, charts) : null;
   const live = await tuning({ mark, view, picture });

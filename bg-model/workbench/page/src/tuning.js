@@ -1,6 +1,6 @@
-// The sliders of a live page.
-// In: the settings that bg-workbench's `page/settings.rs` writes, the module's bytes, what shows an answer. Out: a panel;
-// a value that is changed there runs the model again, and the page shows that run.
+// The sliders of a live page. In: the settings that bg-workbench's `page/settings.rs` writes, what starts a worker with
+// the model, what shows an answer. Out: a panel; a value that is changed there runs the model again, and the page shows
+// that run.
 
 import { element, number } from "./page.js";
 import { rangeOf, rounded } from "./ranges.js";
@@ -18,23 +18,20 @@ function written(value) {
 
 /** The model in a worker. Of the orders that arrive while one is under way, only the newest waits. */
 class Runner {
-  #script;
-  #bytes;
+  #begin;
   #worker;
   #current = null;
   #next = null;
 
-  constructor(script, bytes) {
-    this.#script = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
-    this.#bytes = bytes;
+  constructor(begin) {
+    this.#begin = begin;
     this.#start();
   }
 
   #start() {
     this.#worker?.terminate();
     this.#current = null;
-    this.#worker = new Worker(this.#script);
-    this.#worker.postMessage(this.#bytes);
+    this.#worker = this.#begin();
     this.#worker.onmessage = ({ data }) => {
       const { told } = this.#current;
       this.#current = null;
@@ -120,8 +117,8 @@ class Control {
 export class Tuning {
   #runner;
 
-  /** Fills `section`; `show` is handed each answer. */
-  constructor(section, { order, parameters }, script, bytes, show) {
+  /** Fills `section`; `begin` starts a worker, `show` is handed each answer. */
+  constructor(section, { order, parameters }, begin, show) {
     this.order = order;
     this.show = show;
     this.status = element("p", { class: "status", role: "status" }, "Move a slider: the model in this page runs again.");
@@ -142,9 +139,9 @@ export class Tuning {
       ...(parameters.length > MANY ? [this.#search()] : []),
       list,
     );
-    this.#runner = new Runner(script, bytes);
+    this.#runner = new Runner(begin);
     // The run that the page shows already: a browser compiles better what has run.
-    this.#runner.order(JSON.stringify(order), () => this.status.classList.remove("busy"));
+    if (!begin.hasRun) this.#runner.order(JSON.stringify(order), () => this.status.classList.remove("busy"));
   }
 
   #search() {

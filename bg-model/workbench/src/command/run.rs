@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use bg_model::description::ParameterInfo;
 use bg_model::run::{Request, RunError, State, sample_times};
 use bg_model::simulation::{MissingColumn, Part};
 
@@ -19,8 +18,7 @@ use crate::machine::{Machine, MachineError};
 use crate::output::{Claimed, OutputError, Places, Table};
 use crate::page::film::Film;
 use crate::page::{Parameter, Views};
-use crate::parameters::{self, Chosen, Values};
-use crate::picture;
+use crate::parameters::{self, Chosen};
 use crate::running::{self, Begin, Outcome};
 use crate::scenes::Scene;
 use crate::shown::Exhibits;
@@ -69,7 +67,7 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
     let rows = sample_times(t0, integration.step, integration.t_end);
-    let values = values(&chosen.values, |name| program.extras.source(name));
+    let values = Parameter::all(&chosen.values, |name| program.extras.source(name));
     let shown = look.zip(views.as_ref()).map(|(look, views)| (look, views, live.as_ref()));
     let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, (&values, inputs), shown) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
@@ -113,12 +111,7 @@ pub(super) fn claimed_and_run<C>(
     let claimed = claim()?;
     let mut outcome = follow(machine, request, from.as_ref())?;
     let description = machine.description();
-    let film = look.map(|_| Film::taken(description, &mut outcome.run));
-    let views = film.map(|film| Views {
-        animation: film.animation(),
-        picture: Some(film.picture(picture::svg(description))),
-        modes,
-    });
+    let views = look.map(|_| Film::taken(description, &mut outcome.run).views(modes));
     Ok((outcome, views, claimed))
 }
 
@@ -172,11 +165,4 @@ fn report(
 /// given.
 pub fn request(arguments: &IntegrationArguments, t0: f64, finest: Option<f64>) -> Result<Request, InputError> {
     Ok(arguments.integration().request(t0, finest)?)
-}
-
-/// The parameters with their values.
-fn values(values: &Values, source: impl Fn(&str) -> &'static str) -> Vec<Parameter> {
-    let parameter =
-        |(info, value): (&ParameterInfo, f64)| Parameter { info: info.clone(), value, source: source(info.name) };
-    values.all().map(parameter).collect()
 }

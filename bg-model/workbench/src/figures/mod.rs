@@ -4,14 +4,22 @@
 //! thinned to what the eye can see at the drawn size ([`thinning`]), so a file stays below 300 kB whatever the output
 //! interval.
 
+#[cfg(not(target_arch = "wasm32"))]
 pub mod bode;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod canvas;
 pub mod compact;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod fit;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod influence;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod outputs;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod palette;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod panel;
+#[cfg(not(target_arch = "wasm32"))]
 mod work_precision;
 
 use std::sync::Arc;
@@ -20,6 +28,7 @@ pub use bg_analysis::thinning;
 use bg_model::simulation::{MissingColumn, Recording};
 use thiserror::Error;
 
+#[cfg(not(target_arch = "wasm32"))]
 pub use work_precision::{Curve, work_precision};
 
 /// What draws a figure of a run.

@@ -26,15 +26,15 @@ use crate::extras::Extras;
 use crate::inputs::{Named, Setting, named};
 use crate::machine::MachineError;
 use crate::page::film::Film;
-use crate::page::{Balance, Bonds, Data};
-use crate::parameters::number;
+use crate::page::{Balance, Bonds, Data, Parameter, Report, page_beside};
+use crate::parameters::{Values, number};
 use crate::request::{Integration, RequestError};
 use crate::running::{Begin, BeginError, Outcome, follow};
 use crate::scenes::Scene;
 use crate::summary::{Check, Summary};
 
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) use module::{Module, ModuleError};
+pub use module::{Module, ModuleError};
 
 /// What a page asks for: a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -111,14 +111,22 @@ struct Shown {
     checks: Vec<Check>,
 }
 
-/// The line of the summary that only a clock can tell.
-const WALL_TIME: &str = "wall time";
-
 /// The answer to the order `text`, JSON both. In WebAssembly there is an answer for the one scene that the module is
 /// built for.
 #[must_use]
 pub fn answer(program: &Program, text: &str) -> String {
-    told(serde_json::from_str(text).map_err(Refusal::from).and_then(|order: Order| shown_of(program, &order)))
+    let shown = |order: Order| Ok(made(program, &order)?.shown()?);
+    told(serde_json::from_str(text).map_err(Refusal::from).and_then(shown))
+}
+
+/// The report of the run that the order asks for, HTML for a frame of a page that has `report.css`, `beside.js` and
+/// `report.js` of this package beside it, and runs the model again when the report's sliders are moved.
+///
+/// # Errors
+/// Why there is no such run: a sentence.
+pub fn report(program: &Program, order: &Order) -> Result<String, String> {
+    let page = |made: Made<'_>| Ok(made.page(order)?);
+    made(program, order).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
 }
 
 /// Registers what answers a page.
@@ -135,12 +143,24 @@ fn told(outcome: Result<Shown, Refusal>) -> String {
     serde_json::to_string(&answer).expect("an answer has text keys only")
 }
 
+/// A run that was asked for.
+struct Made<'a> {
+    extras: &'a dyn Extras,
+    scene: &'a Scene,
+    outcome: Outcome,
+    /// What can be seen of it.
+    film: Film,
+    /// When the rows of its CSV file are, s.
+    rows: Vec<f64>,
+    /// The parameters of the graph.
+    values: Values,
+    inputs: Vec<Named>,
+}
+
 /// Runs a scene as it is asked for.
-fn shown_of(program: &Program, order: &Order) -> Result<Shown, Refusal> {
+fn made<'a>(program: &'a Program, order: &Order) -> Result<Made<'a>, Refusal> {
     let models = &program.models;
-    let scene = models.named(&order.scene);
-    #[cfg(target_arch = "wasm32")]
-    let scene = scene.filter(|scene| scene.index == crate::compiled::MODEL);
+    let scene = models.named(&order.scene).filter(|scene| models.maker().has(scene.index));
     let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
     let mut values = models.defaults();
     order.parameters.iter().try_for_each(|(name, value)| values.set(name, *value))?;
@@ -151,38 +171,68 @@ fn shown_of(program: &Program, order: &Order) -> Result<Shown, Refusal> {
     let mut request = order.integration.request(t0, Some(program.extras.finest(t_end)))?;
     request.parts.push(Part::Shown);
     let from = order.begin.state(&*machine)?;
-    let outcome = follow(&*machine, request, from.as_ref(), |_| ())?;
-    let changed = changed(values.all());
-    let inputs = named(&order.inputs, models.graph().description.inputs);
-    Ok(shown(&*program.extras, scene, outcome, &sample_times(t0, step, t_end), (changed, inputs))?)
+    let mut outcome = follow(&*machine, request, from.as_ref(), |_| ())?;
+    Ok(Made {
+        extras: &*program.extras,
+        scene,
+        film: Film::taken(scene.description, &mut outcome.run),
+        outcome,
+        rows: sample_times(t0, step, t_end),
+        values,
+        inputs: named(&order.inputs, models.graph().description.inputs),
+    })
 }
 
-/// What a page shows of a run with these changed parameters and inputs, whose CSV file would have the rows `rows`, s.
-fn shown(
-    extras: &dyn Extras,
-    scene: &Scene,
-    outcome: Outcome,
-    rows: &[f64],
-    (changed, inputs): (Vec<String>, Vec<Named>),
-) -> Result<Shown, MissingColumn> {
-    let Outcome { mut run, failure } = outcome;
-    let description: &'static Description = scene.description;
-    let film = Film::taken(description, &mut run);
-    let animation = film.animation().filter(|animation| !animation.times.is_empty());
-    let data = Data::new(description, &run, rows, animation.as_ref(), None);
-    let mut summary = Summary::new(&scene.name, &run, failure, extras.additions(&run)?);
-    summary.changed_parameters = changed;
-    summary.inputs = inputs;
-    let lines = summary.lines().into_iter().filter(|(name, _)| *name != WALL_TIME);
-    Ok(Shown {
-        note: data.note(run.times.len(), rows.iter().filter(|&&row| row <= summary.reached_s).count()),
-        data,
-        bonds: Bonds::new(description.bonds, &film.picture(String::new())),
-        balance: Balance::of(description, &run).map(|balance| balance.sentence()),
-        lines: lines.map(|(name, text)| (name.to_owned(), text)).collect(),
-        failure: summary.failure.clone(),
-        checks: summary.checks,
-    })
+impl Made<'_> {
+    /// The run in numbers.
+    fn summary(&self) -> Result<Summary, MissingColumn> {
+        let Outcome { run, failure } = &self.outcome;
+        let mut summary = Summary::new(&self.scene.name, run, failure.clone(), self.extras.additions(run)?);
+        // WebAssembly has no clock, and the same run gives the same bytes.
+        summary.wall_time_s = 0.0;
+        summary.changed_parameters = changed(self.values.all());
+        summary.inputs.clone_from(&self.inputs);
+        Ok(summary)
+    }
+
+    /// What a page shows of it.
+    fn shown(&self) -> Result<Shown, MissingColumn> {
+        let Self { film, outcome: Outcome { run, .. }, rows, .. } = self;
+        let description: &'static Description = self.scene.description;
+        let animation = film.animation().filter(|animation| !animation.times.is_empty());
+        let data = Data::new(description, run, rows, animation.as_ref(), None);
+        let summary = self.summary()?;
+        let lines = summary.lines().into_iter();
+        Ok(Shown {
+            note: data.note(run.times.len(), rows.iter().filter(|&&row| row <= summary.reached_s).count()),
+            data,
+            bonds: Bonds::new(description.bonds, &film.picture(String::new())),
+            balance: Balance::of(description, run).map(|balance| balance.sentence()),
+            lines: lines.map(|(name, text)| (name.to_owned(), text)).collect(),
+            failure: summary.failure.clone(),
+            checks: summary.checks,
+        })
+    }
+
+    /// It as a page in a frame of another page.
+    fn page(&self, order: &Order) -> Result<String, MissingColumn> {
+        let Self { extras, scene, outcome: Outcome { run, .. }, film, rows, values, .. } = self;
+        let rows = run.at(rows).times;
+        let report = Report {
+            texts: &extras.page(scene.description),
+            description: scene.description,
+            scene: &scene.summary(),
+            parameters: &Parameter::all(values, |name| extras.source(name)),
+            summary: &self.summary()?,
+            run,
+            rows: &rows,
+            figures: &[],
+            drawings: &[],
+            views: &film.views(None),
+            live: None,
+        };
+        Ok(page_beside(&report, order))
+    }
 }
 
 /// Those of the parameters that are not at their defaults, as `name = value unit`.

@@ -19,7 +19,8 @@ const PROFILE: [(&str, &str); 4] = [
     ("CARGO_PROFILE_RELEASE_STRIP", "true"),
 ];
 
-/// This repository's own release builds do without optimisation where a module does not.
+/// This repository's own release builds do without optimisation where a module does not; settings that come after it
+/// win.
 const WORKBENCH: &str = "profile.release.package.bg-workbench.opt-level = 3";
 
 /// Where the module is from.
@@ -78,8 +79,16 @@ impl Module {
     /// # Errors
     /// It cannot be built or read, or is none.
     pub fn wasm(&self, model: usize) -> Result<Vec<u8>, ModuleError> {
+        self.wasm_with(model, &[])
+    }
+
+    /// The same; one that is built has more settings of cargo's, such as `profile.release.package.syn.opt-level = "s"`.
+    ///
+    /// # Errors
+    /// As [`Module::wasm`].
+    pub fn wasm_with(&self, model: usize, settings: &[String]) -> Result<Vec<u8>, ModuleError> {
         let path = match self {
-            Self::Built => built(model)?,
+            Self::Built => built(model, settings)?,
             Self::File(path) => path.clone(),
         };
         let wasm = std::fs::read(&path).map_err(|source| ModuleError::Unreadable { path: path.clone(), source })?;
@@ -106,7 +115,7 @@ struct Named {
 }
 
 /// Builds the running program and gives the module's file.
-fn built(model: usize) -> Result<PathBuf, ModuleError> {
+fn built(model: usize, settings: &[String]) -> Result<PathBuf, ModuleError> {
     let program = std::env::current_exe().map_err(|_| ModuleError::Nameless)?;
     let name = program.file_stem().and_then(|name| name.to_str()).ok_or(ModuleError::Nameless)?;
     let is_example = program.parent().is_some_and(|folder| folder.ends_with("examples"));
@@ -114,7 +123,9 @@ fn built(model: usize) -> Result<PathBuf, ModuleError> {
     let cargo = tool("CARGO", "cargo");
     let mut build = Command::new(&cargo);
     build.args(["build", "--release", "--target", TARGET, "--message-format=json-render-diagnostics"]);
-    build.args(["--config", WORKBENCH]);
+    for setting in [WORKBENCH].into_iter().chain(settings.iter().map(String::as_str)) {
+        build.args(["--config", setting]);
+    }
     build.args([if is_example { "--example" } else { "--bin" }, name]);
     build.envs(PROFILE).env("BG_LIVE_MODEL", model.to_string());
     if let Some(package) = std::env::var_os("CARGO_MANIFEST_DIR") {

@@ -11,7 +11,9 @@ use bg_model::simulation::{Column, Part};
 
 use super::animation::{Animation, BodyTrack, JointTrack, NamedPoint, Shape, Solid};
 use super::picture::{BondSeries, Picture};
+use super::{Linearised, Views};
 use crate::machine::Machine;
+use crate::picture;
 
 /// What is shown of a run, by its columns.
 pub struct Film {
@@ -48,6 +50,12 @@ impl Film {
     /// What the bonds do, with the picture of the graph, an SVG text.
     pub fn picture(&self, svg: String) -> Picture {
         Picture { svg, times: self.times.clone(), bonds: self.bonds() }
+    }
+
+    /// All that a report shows beside the run, with these modes.
+    pub fn views(&self, modes: Option<Linearised>) -> Views {
+        let picture = Some(self.picture(picture::svg(self.description)));
+        Views { animation: self.animation(), picture, modes }
     }
 
     /// The series of each bond; without components where a scene does not know them.

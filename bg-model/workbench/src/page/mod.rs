@@ -12,7 +12,6 @@ mod data;
 pub(crate) mod film;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod glb;
-#[cfg(not(target_arch = "wasm32"))]
 mod html;
 #[cfg(not(target_arch = "wasm32"))]
 mod mesh;
@@ -20,22 +19,23 @@ mod modes;
 #[cfg(not(target_arch = "wasm32"))]
 mod packed;
 mod picture;
-#[cfg(not(target_arch = "wasm32"))]
 mod report;
 mod samples;
-#[cfg(not(target_arch = "wasm32"))]
 mod settings;
 
 use bg_model::description::ParameterInfo;
 
 use crate::linear::Mode;
+use crate::parameters::Values;
 use animation::Animation;
 
 pub(crate) use charts::Balance;
 pub(crate) use data::{Bonds, Data};
 pub use picture::{BondSeries, Picture};
+pub use report::Report;
+pub(crate) use report::page_beside;
 #[cfg(not(target_arch = "wasm32"))]
-pub use report::{Report, page};
+pub use report::{BESIDE, page};
 
 /// A parameter of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +49,13 @@ pub struct Parameter {
 }
 
 impl Parameter {
+    /// All of a table, with their values, and `source` as where each default is from.
+    pub(crate) fn all(values: &Values, source: impl Fn(&str) -> &'static str) -> Vec<Self> {
+        let parameter =
+            |(info, value): (&ParameterInfo, f64)| Self { info: info.clone(), value, source: source(info.name) };
+        values.all().map(parameter).collect()
+    }
+
     /// Whether the run has another value than the default.
     #[must_use]
     pub fn is_changed(&self) -> bool {

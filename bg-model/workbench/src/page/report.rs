@@ -7,22 +7,32 @@ use super::charts::Balance;
 use super::data::{Bonds, Data};
 use super::html::{self, Drawing};
 use super::modes::Modes;
+#[cfg(not(target_arch = "wasm32"))]
 use super::packed::packed;
 use super::settings;
 use super::{Parameter, Views};
 use crate::extras::Page as Texts;
 use crate::figures::Figure;
 use crate::figures::compact::compact;
-use crate::live::Live;
+use crate::live::{Live, Order};
 use crate::markup::{escaped, write_into};
 use crate::summary::Summary;
 
+#[cfg(not(target_arch = "wasm32"))]
 const LOADER: &str = include_str!("../../page/loader.js");
+#[cfg(not(target_arch = "wasm32"))]
 const SCRIPT: &str = include_str!("../../page/dist/report.js");
 /// What runs the model of a live page.
+#[cfg(not(target_arch = "wasm32"))]
 const WORKER: &str = include_str!("../../page/dist/worker.js");
 const LICENCES: &str = include_str!("../../page/dist/THIRD-PARTY.txt");
+#[cfg(not(target_arch = "wasm32"))]
 const STYLE: &str = include_str!("../../page/dist/report.css");
+
+/// The files that a page has beside it which shows reports in a frame: names and texts.
+#[cfg(not(target_arch = "wasm32"))]
+pub const BESIDE: [(&str, &str); 3] =
+    [("report.css", STYLE), ("report.js", SCRIPT), ("beside.js", include_str!("../../page/beside.js"))];
 
 /// What a report is about.
 #[derive(Clone, Copy, Debug)]
@@ -51,9 +61,44 @@ pub struct Report<'a> {
     pub live: Option<&'a Live>,
 }
 
-/// The page.
+/// The page, in one file with all that it needs. In WebAssembly there is no such page.
+#[cfg(not(target_arch = "wasm32"))]
 #[must_use]
 pub fn page(report: &Report<'_>) -> String {
+    let live = report.live;
+    let more = live.map(|live| [("worker", WORKER.as_bytes()), ("module", &live.module[..])]);
+    let more: Vec<_> = [("script", SCRIPT.as_bytes())].into_iter().chain(more.into_iter().flatten()).collect();
+    let texts = |texts: &[(&str, String)]| {
+        let texts = texts.iter().map(|(id, text)| (*id, text.as_bytes()));
+        let all = texts.chain(more.iter().copied());
+        all.map(|(id, bytes)| format!("<script type=\"text/plain\" id=\"{id}\">{}</script>\n", packed(bytes))).collect()
+    };
+    let (style, start) = (format!("<style>{STYLE}</style>\n"), format!("<script>\n{LOADER}</script>\n"));
+    put_together(report, live.map(|live| &live.order), &style, &start, texts)
+}
+
+/// The page of a run that another page has made, in a frame there: that page's folder has style and script,
+/// `report.css`, `beside.js` and `report.js`, and that page itself runs the model again.
+#[must_use]
+pub fn page_beside(report: &Report<'_>, order: &Order) -> String {
+    let text = |(id, json): &(&str, String)| {
+        let json = json.replace('<', "\\u003c");
+        format!("<script type=\"application/json\" id=\"{id}\">{json}</script>\n")
+    };
+    let style = "<link rel=\"stylesheet\" href=\"report.css\">\n";
+    let start = "<script src=\"beside.js\"></script>\n<script src=\"report.js\"></script>\n";
+    put_together(report, Some(order), style, start, |texts| texts.iter().map(text).collect())
+}
+
+/// The page with this style, these scripts that start it, and the JSON texts that it reads, as `texts` writes them;
+/// `order` is what made the run, where the page can run its model again.
+fn put_together(
+    report: &Report<'_>,
+    order: Option<&Order>,
+    style: &str,
+    start: &str,
+    texts: impl FnOnce(&[(&'static str, String)]) -> String,
+) -> String {
     let Views { animation, picture, modes } = report.views;
     let animation = animation.as_ref().filter(|animation| !animation.bodies.is_empty() && !animation.times.is_empty());
     let at_rest = modes.as_ref().zip(animation).and_then(|(modes, _)| Some((modes, modes.rest.as_ref()?)));
@@ -66,7 +111,7 @@ pub fn page(report: &Report<'_>) -> String {
     let has_checks = !report.summary.checks.is_empty();
     let sections = [
         (animation.is_some(), "machine", "Machine"),
-        (report.live.is_some(), "controls", "Try other values"),
+        (order.is_some(), "controls", "Try other values"),
         (true, "charts", "Outputs"),
         (picture.is_some(), "picture", "Bond graph"),
         (balance.is_some(), "balance", "Energy balance"),
@@ -83,15 +128,10 @@ pub fn page(report: &Report<'_>) -> String {
     let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n";
     write_into(&mut page, format_args!("<title>{}</title>\n", escaped(&report.texts.title)));
-    write_into(&mut page, format_args!("<style>{STYLE}</style>\n</head>\n<body>\n"));
+    write_into(&mut page, format_args!("{style}</head>\n<body>\n"));
     html::head(&mut page, report, &links);
     page += "<main>\n";
-    html::stage(
-        &mut page,
-        animation.is_some(),
-        report.live.is_some(),
-        &data.note(report.run.times.len(), report.rows.len()),
-    );
+    html::stage(&mut page, animation.is_some(), order.is_some(), &data.note(report.run.times.len(), report.rows.len()));
     if let Some(picture) = picture {
         html::picture(&mut page, &picture.svg);
     }
@@ -116,20 +156,16 @@ pub fn page(report: &Report<'_>) -> String {
     page += "</main>\n";
     html::foot(&mut page, LICENCES);
     write_into(&mut page, format_args!("<script type=\"application/json\" id=\"data\">{}</script>\n", data.json()));
-    if let Some(live) = report.live {
-        let settings = settings::json(&live.order, report);
+    if let Some(order) = order {
+        let settings = settings::json(order, report);
         write_into(&mut page, format_args!("<script type=\"application/json\" id=\"live\">{settings}</script>\n"));
     }
     let svgs: Vec<String> = drawings.iter().map(|drawing| compact(drawing.svg)).collect();
     let svgs = serde_json::to_string(&svgs).expect("texts are JSON");
     let bonds = picture.as_ref().and_then(|picture| Bonds::new(report.description.bonds, picture));
     let bonds = bonds.map_or_else(|| "null".to_owned(), |bonds| bonds.json());
-    let texts = [("bonds", bonds.as_bytes()), ("drawings", svgs.as_bytes()), ("script", SCRIPT.as_bytes())];
-    let live = report.live.map(|live| [("worker", WORKER.as_bytes()), ("module", &live.module[..])]);
-    for (id, bytes) in texts.into_iter().chain(live.into_iter().flatten()) {
-        write_into(&mut page, format_args!("<script type=\"text/plain\" id=\"{id}\">{}</script>\n", packed(bytes)));
-    }
-    write_into(&mut page, format_args!("<script>\n{LOADER}</script>\n</body>\n</html>\n"));
+    page += &texts(&[("bonds", bonds), ("drawings", svgs)]);
+    write_into(&mut page, format_args!("{start}</body>\n</html>\n"));
     page
 }
 

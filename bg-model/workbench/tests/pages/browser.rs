@@ -30,7 +30,13 @@ pub struct Visit {
 }
 
 /// Opens a file with `fragment` after `#` and waits until the page says that it is loaded.
+#[allow(dead_code, reason = "not every suite has files")]
 pub fn visit(browser: &str, page: &Path, fragment: &str, arguments: &[&str]) -> Visit {
+    visit_address(browser, &format!("file://{}#{fragment}", page.display()), arguments)
+}
+
+/// Opens an address and waits until the page says that it is loaded.
+pub fn visit_address(browser: &str, address: &str, arguments: &[&str]) -> Visit {
     let folder = tempfile::tempdir().expect("a folder for the browser's profile");
     let out = folder.path().join("document");
     let log = folder.path().join("log");
@@ -40,7 +46,7 @@ pub fn visit(browser: &str, page: &Path, fragment: &str, arguments: &[&str]) -> 
         .arg("--dump-dom")
         .arg(format!("--user-data-dir={}", folder.path().join("profile").display()))
         .args(arguments)
-        .arg(format!("file://{}#{fragment}", page.display()))
+        .arg(address)
         .stdout(std::fs::File::create(&out).unwrap())
         .stderr(std::fs::File::create(&log).unwrap())
         .spawn()

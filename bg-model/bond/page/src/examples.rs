@@ -1,0 +1,131 @@
+//! The examples that the page offers.
+//!
+//! In: sources of this repository. Out: the text of each, as it stands in a `.bond` file, and the run that it is for.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use bg_gallery::example::Example;
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use serde::Serialize;
+
+/// An example.
+#[derive(Debug, Default, Serialize)]
+pub struct Offered {
+    /// Its name in a link.
+    pub name: String,
+    /// What it is.
+    pub title: String,
+    /// What to look at; may have code between backticks.
+    pub about: String,
+    /// The scene that is shown first; empty: the one that stands for the graph.
+    pub scene: String,
+    /// The end of the run, s, and the interval of its rows, where they are not the usual ones.
+    pub t_end: Option<f64>,
+    /// The interval of the rows, s.
+    pub step: Option<f64>,
+    /// Inputs that are not 0.
+    pub inputs: BTreeMap<String, f64>,
+    /// The text.
+    pub text: String,
+}
+
+/// The pendulum of `bond new`.
+const FIRST: &str = include_str!("../../src/first.bond");
+
+/// All examples; the first is the one that the page opens with.
+///
+/// # Errors
+/// A file that cannot be read, or has no text: a sentence.
+pub fn all() -> Result<Vec<Offered>, String> {
+    let repository = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../..");
+    let first = Offered {
+        name: "first".to_owned(),
+        title: "A first pendulum".to_owned(),
+        about: "Change a number. The pendulum swings on a pin, whose force is an output.".to_owned(),
+        text: FIRST
+            .replace("// A pendulum on a compliant pin. Change a number, and run it again: bond run FILE\n\n", ""),
+        ..Offered::default()
+    };
+    let hacksaw = Offered {
+        name: "hacksaw".to_owned(),
+        title: "A power hacksaw".to_owned(),
+        about: "The five links of the paper that this project is about. Compiling it takes a moment.".to_owned(),
+        scene: "motion".to_owned(),
+        text: text(&repository.join("hacksaw/src/mechanism.rs"))?,
+        ..Offered::default()
+    };
+    let examples = Example::all(&repository.join("bg-model/workbench/examples"))?;
+    let offered = examples.iter().map(|example| {
+        let text = text(&repository.join(format!("bg-model/workbench/examples/{}.rs", example.name)))?;
+        Ok(of_example(example, text))
+    });
+    let offered: Vec<Offered> = offered.collect::<Result<_, String>>()?;
+    Ok([first, hacksaw].into_iter().chain(offered).collect())
+}
+
+/// An example of the workbench, with the run that its head comment is for; parameters stay at their defaults.
+fn of_example(example: &Example, text: String) -> Offered {
+    let value = |option: &str| {
+        let place = example.arguments.iter().position(|word| word == option)?;
+        example.arguments.get(place + 1).cloned()
+    };
+    let number = |option| value(option).and_then(|text| text.parse().ok());
+    let input = value("--input").and_then(|text| {
+        let (name, value) = text.split_once('=')?;
+        Some((name.to_owned(), value.parse().ok()?))
+    });
+    Offered {
+        name: example.name.clone(),
+        title: example.title.clone(),
+        about: example.text.clone(),
+        scene: value("--scene").unwrap_or_default(),
+        t_end: number("--t-end"),
+        step: number("--step"),
+        inputs: input.into_iter().collect(),
+        text,
+    }
+}
+
+/// What stands in the calls of `bond_graph!` of a Rust file.
+fn text(path: &Path) -> Result<String, String> {
+    let failed = |fault: &dyn std::fmt::Display| format!("{}: {fault}", path.display());
+    let source = std::fs::read_to_string(path).map_err(|fault| failed(&fault))?;
+    let tokens: TokenStream = source.parse().map_err(|fault| failed(&fault))?;
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
+    let inside = |tokens: &[TokenTree]| match tokens {
+        [TokenTree::Ident(name), TokenTree::Punct(mark), TokenTree::Group(group)]
+            if name == "bond_graph" && mark.as_char() == '!' && group.delimiter() == Delimiter::Brace =>
+        {
+            let [open, close] = [group.span_open().byte_range().end, group.span_close().byte_range().start];
+            Some(outdented(&source[open..close]))
+        }
+        _ => None,
+    };
+    let texts: Vec<String> = tokens.windows(3).filter_map(inside).collect();
+    if texts.is_empty() { Err(failed(&"has no bond_graph! { .. }")) } else { Ok(texts.join("\n")) }
+}
+
+/// The lines of a block as they stand outside of it.
+fn outdented(block: &str) -> String {
+    let lines = block.lines().skip_while(|line| line.trim().is_empty());
+    let lines: Vec<&str> = lines.map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();
+    lines.join("\n").trim_end().to_owned() + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_example_is_a_text_without_faults() {
+        let all = all().expect("the sources of this repository");
+        assert!(all.len() > 15, "{}", all.len());
+        for Offered { name, text, scene, .. } in &all {
+            let text = bond_graph::text::Text { path: name.into(), text: text.clone() };
+            let wanted = bond_graph::text::Wanted { scene: Some(scene.clone()), most: None };
+            let graphs = bond_graph::file::graphs(&text, &wanted).unwrap_or_else(|faults| panic!("{name}: {faults:?}"));
+            assert!(!graphs.is_empty(), "{name}");
+        }
+    }
+}

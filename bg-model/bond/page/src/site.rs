@@ -1,0 +1,75 @@
+//! The files of the page.
+//!
+//! In: a folder. Out: what a static server needs to show the page from there: the page with its script and style, the
+//! report's, the examples, and the compiler as a WebAssembly module, which cargo builds.
+
+use std::path::Path;
+
+use bg_workbench::live::Module;
+use bg_workbench::page::BESIDE;
+use serde_json::{Value, json};
+
+use crate::answers::Answerer;
+use crate::examples::{self, Offered};
+
+/// The texts of the page itself, by their names.
+const TEXTS: [(&str, &str); 5] = [
+    ("index.html", include_str!("../web/index.html")),
+    ("page.css", include_str!("../web/dist/page.css")),
+    ("page.js", include_str!("../web/dist/page.js")),
+    ("compiler.js", include_str!("../web/dist/compiler.js")),
+    ("THIRD-PARTY.txt", include_str!("../web/dist/THIRD-PARTY.txt")),
+];
+/// The compiler.
+pub const MODULE: &str = "bond.wasm";
+/// The examples.
+const EXAMPLES: &str = "examples.json";
+/// The report of the first example, with which the page opens before its compiler is there: the bytes that this gives.
+const FIRST: &str = "first.html";
+
+/// What is made small rather than fast, which is two fifths of the whole module and a tenth of the time of a
+/// compilation: it does not run once for each step.
+const SMALL: [&str; 10] = [
+    "bg-analysis",
+    "bg-compiler",
+    "bg-picture",
+    "bg-workbench",
+    "bond-graph",
+    "proc-macro2",
+    "quote",
+    "serde_json",
+    "syn",
+    "toml",
+];
+
+/// Builds the module and writes all files; gives a sentence that says so.
+///
+/// # Errors
+/// The module cannot be built, a file not be written: a sentence.
+pub fn write(folder: &Path) -> Result<String, String> {
+    let small = SMALL.map(|package| format!("profile.release.package.{package}.opt-level = \"s\""));
+    let module = Module::Built.wasm_with(0, &small).map_err(|fault| fault.to_string())?;
+    let examples = examples::all()?;
+    let first = report(&examples[0])?;
+    let examples = serde_json::to_string(&examples).expect("texts and numbers");
+    std::fs::create_dir_all(folder).map_err(|fault| format!("cannot make {}: {fault}", folder.display()))?;
+    let texts = TEXTS.into_iter().chain(BESIDE).map(|(name, text)| (name, text.as_bytes()));
+    for (name, bytes) in
+        texts.chain([(MODULE, &module[..]), (EXAMPLES, examples.as_bytes()), (FIRST, first.as_bytes())])
+    {
+        let path = folder.join(name);
+        std::fs::write(&path, bytes).map_err(|fault| format!("cannot write {}: {fault}", path.display()))?;
+    }
+    let folder = folder.display();
+    Ok(format!("written: {folder}; put it on a static server, or open it by: bond serve --page {folder}"))
+}
+
+/// The report of an example, as the page's own compiler gives it.
+fn report(example: &Offered) -> Result<String, String> {
+    let Offered { text, scene, t_end, step, inputs, .. } = example;
+    let answerer = Answerer::default();
+    let _ = answerer.answer(&json!({ "ask": "compile", "text": text, "graph": null, "scene": scene }).to_string());
+    let run = json!({ "ask": "report", "t_end": t_end, "step": step, "inputs": inputs });
+    let answer: Value = serde_json::from_str(&answerer.answer(&run.to_string())).expect("answers are JSON");
+    answer["page"].as_str().map(str::to_owned).ok_or_else(|| answer["fault"].to_string())
+}

@@ -1,0 +1,103 @@
+// The editor.
+// In: its element, what is told of changes. Out: its text, which can be set; faults at their places.
+
+import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
+import { bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
+import { lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
+import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
+import { EditorState, Transaction } from "@codemirror/state";
+import { drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers } from "@codemirror/view";
+import { bond, colours } from "./colours.js";
+
+/** Where each byte of the text in UTF-8 stands in it, for those that are asked for in ascending order. */
+function places(text) {
+  let [byte, at] = [0, 0];
+  return (wanted) => {
+    if (wanted < byte) [byte, at] = [0, 0];
+    while (byte < wanted && at < text.length) {
+      const code = text.codePointAt(at);
+      byte += code < 0x80 ? 1 : code < 0x800 ? 2 : code < 0x10000 ? 3 : 4;
+      at += code < 0x10000 ? 1 : 2;
+    }
+    return at;
+  };
+}
+
+/** The faults as what stands in the text from where to where. */
+export function placed(text, faults) {
+  const place = places(text);
+  return faults.map((fault) => {
+    const [from, to] = [place(fault.bytes[0]), place(fault.bytes[1])];
+    return { ...fault, from, to };
+  });
+}
+
+export class Editor {
+  #view;
+
+  /** `changed` is called when the reader changes the text. */
+  constructor(parent, changed) {
+    const listener = EditorView.updateListener.of((update) => {
+      const isReaders = update.transactions.some((transaction) => transaction.annotation(Transaction.userEvent));
+      if (update.docChanged && isReaders) changed();
+    });
+    this.extensions = [
+      lineNumbers(),
+      lintGutter(),
+      history(),
+      drawSelection(),
+      bracketMatching(),
+      indentOnInput(),
+      indentUnit.of("    "),
+      EditorState.tabSize.of(4),
+      highlightActiveLine(),
+      highlightActiveLineGutter(),
+      highlightSelectionMatches(),
+      bond,
+      syntaxHighlighting(colours),
+      keymap.of([...defaultKeymap, ...searchKeymap, ...historyKeymap, ...lintKeymap, indentWithTab]),
+      EditorView.contentAttributes.of({ "aria-label": "Text of the machine", autocapitalize: "off", spellcheck: "false" }),
+      listener,
+    ];
+    this.#view = new EditorView({ parent, state: this.#state("") });
+  }
+
+  #state(text) {
+    return EditorState.create({ doc: text, extensions: this.extensions });
+  }
+
+  get text() {
+    return this.#view.state.doc.toString();
+  }
+
+  /** Another text; what was done to the one before cannot be undone in it. */
+  set text(text) {
+    this.#view.setState(this.#state(text));
+  }
+
+  /** Marks the faults. */
+  mark(faults) {
+    const { length } = this.#view.state.doc;
+    const diagnostics = faults.map(({ from, to, code, message, help }) => ({
+      from: Math.min(from, length),
+      to: Math.min(Math.max(to, from + 1), length),
+      severity: "error",
+      source: code,
+      message: help ? `${message}\n${help}` : message,
+    }));
+    this.#view.dispatch(setDiagnostics(this.#view.state, diagnostics));
+  }
+
+  /** Goes there. */
+  select(from, to) {
+    const { length } = this.#view.state.doc;
+    const selection = { anchor: Math.min(from, length), head: Math.min(to, length) };
+    this.#view.dispatch({ selection, effects: EditorView.scrollIntoView(selection.anchor, { y: "center" }) });
+    this.#view.focus();
+  }
+
+  /** Types at a place, as a reader does: for tests. */
+  type(from, to, insert) {
+    this.#view.dispatch({ changes: { from, to, insert }, userEvent: "input.type" });
+  }
+}

@@ -1,0 +1,3 @@
+//! The examples of the workbench, as their head comments tell of them.
+
+pub mod example;
