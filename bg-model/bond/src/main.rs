@@ -54,6 +54,7 @@ fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -
     match maker::Loaded::of(graphs, graph.as_deref()) {
         Ok(loaded) => {
             let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into));
+            let loaded = loaded.of_text(read, most);
             let loaded = if is_interpreted { loaded.by(BackEnd::Interpreter) } else { loaded };
             let program = Program::with(loaded).on_file("bond", &file.display().to_string());
             program.version(env!("CARGO_PKG_VERSION")).main(words.chain(options))

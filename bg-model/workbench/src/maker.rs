@@ -8,6 +8,8 @@ use bg_model::description::Description;
 use bg_model::input::Input;
 use bg_model::parameters::ParameterError;
 
+pub use bg_fmi::archive::Resource;
+
 use crate::machine::Machine;
 
 /// What makes the models of a graph: a [`Compiled`](crate::compiled::Compiled), or your own.
@@ -28,4 +30,18 @@ pub trait Maker: Send + Sync {
     /// # Panics
     /// There is no such model, or another number of values.
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError>;
+
+    /// What makes the model of this number in a functional mock-up unit without a library of its own; none by default.
+    fn prebuilt(&self, _model: usize) -> Option<Prebuilt> {
+        None
+    }
+}
+
+/// A library that is there already, and what it makes a model of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Prebuilt {
+    /// The package whose library it is.
+    pub package: &'static str,
+    /// The resources of the unit.
+    pub resources: Vec<Resource>,
 }
