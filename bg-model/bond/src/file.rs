@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use bg_compiler::source::syntax::files::gather;
 use bg_import::{Format, Options, import_file};
-use bg_loaded::{Fault, Graph, Opened, load_file};
+use bg_loaded::{Bundle, Fault, Graph, Opened, STACK, load_file};
 use bg_workbench::files::console;
 use thiserror::Error;
 
@@ -23,8 +23,6 @@ const LARGEST: u64 = 8 << 20;
 /// How often a file is read that changes meanwhile, and the pause before it is read again.
 const ATTEMPTS: usize = 5;
 const PAUSE: Duration = Duration::from_millis(20);
-/// The stack of the compiler, bytes: laws may be long.
-const STACK: usize = 1 << 28;
 
 /// A file that cannot be used.
 #[derive(Debug, Error)]
@@ -188,6 +186,12 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
         found.into_inner()
     });
     reader.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
+
+/// A text with all files that it uses, as data.
+#[must_use]
+pub fn bundle(Text { path, text }: &Text) -> Bundle {
+    Bundle::gathered(path, Opened { file: itself(path), text: text.clone() }, &open)
 }
 
 /// The graphs of a text.

@@ -68,6 +68,9 @@ fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -
     match maker::Loaded::of(graphs, graph.as_deref()) {
         Ok(loaded) => {
             let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into));
+            // What a unit has of it.
+            let is_for_unit = command.first().is_some_and(|command| command == "fmu");
+            let loaded = if is_for_unit { loaded.of_text(file::bundle(&read), most) } else { loaded };
             let loaded = if is_interpreted { loaded.by(BackEnd::Interpreter) } else { loaded };
             let program = Program::with(loaded).on_file("bond", &file.display().to_string());
             program.version(env!("CARGO_PKG_VERSION")).main(words.chain(options))

@@ -5,18 +5,20 @@
 
 use std::sync::Arc;
 
-use bg_loaded::{BackEnd, Blueprint, Graph, Interpreted};
+use bg_loaded::{BackEnd, Blueprint, Bundle, Chosen, Graph, Interpreted};
 use bg_model::description::Description;
 use bg_model::input::Input;
 use bg_model::parameters::ParameterError;
 use bg_workbench::machine::{Machine, Studied};
-use bg_workbench::maker::Maker;
+use bg_workbench::maker::{Maker, Prebuilt};
 
 /// A graph of a text.
 #[derive(Clone, Debug)]
 pub struct Loaded {
     graph: Graph,
     back_end: BackEnd,
+    /// The text, and the most statements of it, where a unit may be made of it.
+    text: Option<(Bundle, Option<usize>)>,
 }
 
 impl Loaded {
@@ -36,13 +38,19 @@ impl Loaded {
             None => return Err(format!("which graph? Say --graph NAME: there are {}", names())),
         };
         let graph = graphs.into_iter().nth(place).expect("it has this place");
-        Ok(Self { graph, back_end: BackEnd::default() })
+        Ok(Self { graph, back_end: BackEnd::default(), text: None })
     }
 
     /// The same, whose models are evaluated by this back end.
     #[must_use]
     pub fn by(self, back_end: BackEnd) -> Self {
         Self { back_end, ..self }
+    }
+
+    /// The same, of this text, of which a graph has so many statements at most.
+    #[must_use]
+    pub fn of_text(self, text: Bundle, most: Option<usize>) -> Self {
+        Self { text: Some((text, most)), ..self }
     }
 
     fn blueprint(&self, model: usize) -> &Arc<Blueprint> {
@@ -67,5 +75,13 @@ impl Maker for Loaded {
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError> {
         let model = Interpreted::new(self.blueprint(model), own, inputs)?.by(self.back_end);
         Ok(Box::new(Studied::new(model)))
+    }
+
+    fn prebuilt(&self, model: usize) -> Option<Prebuilt> {
+        let (text, most) = self.text.as_ref()?;
+        let (graph, model) = (self.graph.name.clone(), self.graph.models[model].description.name.to_owned());
+        let chosen = Chosen { text: text.clone(), graph, model, most: *most };
+        let content = serde_json::to_vec(&chosen).expect("paths of text are text");
+        Some(Prebuilt { name: text.name(), package: "bond-fmu", resources: vec![(Chosen::FILE, content)] })
     }
 }

@@ -54,6 +54,29 @@ pub graph Swing {
 }";
 
 #[test]
+fn a_unit_has_the_text_and_the_files_that_it_uses() {
+    let folder = folder();
+    write(&folder, "weight.bond", "pub part Weight { port slide: translation; I body = 2; slide -> body; }");
+    let text = SWING
+        .replace("param mass: kg = 2, above 0;", "")
+        .replace("/// The mass.", "")
+        .replace("I body = mass start 0;", "part weight: Weight;")
+        .replace("slide -> body;", "slide -> weight.slide;");
+    write(&folder, "swing.bond", &format!("use \"weight.bond\";{text}"));
+    // What makes a library one is told by a symbol of it.
+    write(&folder, "library.so", "fmi3InstantiateModelExchange fmi2Instantiate");
+    for version in ["3.0", "2.0"] {
+        let line = format!("fmu swing.bond --library library.so --fmi {version} --out {version}.fmu");
+        assert!(told(folder.path(), &line).contains("Swing for FMI"));
+        let unit = std::fs::read(folder.path().join(format!("{version}.fmu"))).expect("a unit");
+        let named = told(folder.path(), "fmu swing.bond --library library.so");
+        assert!(named.starts_with("swing.fmu: "), "{named}");
+        let has = |name: &[u8]| unit.windows(name.len()).any(|bytes| bytes == name);
+        assert!(has(b"resources/model.json") && has(b"modelDescription.xml") && has(b"binaries/"));
+    }
+}
+
+#[test]
 fn machine_code_and_interpreter_write_the_same_bytes() {
     let folder = folder();
     told(folder.path(), "new swing");

@@ -1,7 +1,7 @@
 //! A unit as a file: the archive of a library and its description.
 //!
 //! In: a model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml`, the
-//! library in the folder of its platform, and what tells variables that belong together, if any do. Source: FMI 3.0.1,
+//! library in the folder of its platform, its resources, and what tells variables that belong together, if any do. Source: FMI 3.0.1,
 //! section 2.5, and 2.0.4, section 2.3.
 
 use std::io::{self, Cursor, Error, Write};
@@ -34,11 +34,17 @@ pub fn library_name(identifier: &str) -> String {
     format!("{identifier}{}", std::env::consts::DLL_SUFFIX)
 }
 
-/// The bytes of the unit of `model`, whose `library` is one for this platform that exports it.
+/// The bytes of the unit of `model`, whose `library` is one for this platform that exports it, by these `resources`,
+/// names and contents of files, where it needs some.
 ///
 /// # Errors
 /// The library is larger than an archive takes.
-pub fn archive(model: &dyn Described, packing: &Packing, library: &[u8]) -> io::Result<Vec<u8>> {
+pub fn archive(
+    model: &dyn Described,
+    packing: &Packing,
+    library: &[u8],
+    resources: &[(&str, Vec<u8>)],
+) -> io::Result<Vec<u8>> {
     let mut bytes = Cursor::new(Vec::new());
     let mut archive = ZipArchiveWriter::new(&mut bytes);
     let place = format!("binaries/{}/{}", platform(packing.version), library_name(&packing.identifier));
@@ -46,7 +52,10 @@ pub fn archive(model: &dyn Described, packing: &Packing, library: &[u8]) -> io::
     let terminals = terminals_and_icons(model);
     let terminals = terminals.as_ref().map(|text| ("terminalsAndIcons/terminalsAndIcons.xml", text.as_bytes()));
     let files = [("modelDescription.xml", description.as_bytes()), (&place, library)];
-    for (name, content) in files.into_iter().chain(terminals) {
+    let resources: Vec<(String, &[u8])> =
+        resources.iter().map(|(name, content)| (format!("resources/{name}"), &content[..])).collect();
+    let resources = resources.iter().map(|(name, content)| (name.as_str(), *content));
+    for (name, content) in files.into_iter().chain(terminals).chain(resources) {
         let entry = archive.new_file(name).compression_method(CompressionMethod::DEFLATE);
         let (mut entry, _) = entry.start().map_err(Error::other)?;
         entry.write_all(&miniz_oxide::deflate::compress_to_vec(content, LEVEL))?;

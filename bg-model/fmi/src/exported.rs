@@ -7,9 +7,11 @@ use std::rc::Rc;
 
 use bg_model::description::Description;
 use bg_model::dynamics::Machine;
+use bg_model::input::Input;
 use bg_model::linear::Sparsity;
-use bg_model::mechanism::Mechanism;
+use bg_model::mechanism::{Liftable, Mechanism};
 use bg_model::parameters::{ParameterError, Parameters};
+use bg_model::scalar::Dual;
 
 use crate::instance::{Fault, InDuals, Signals, Slopes, Stood, nominals_at_start};
 
@@ -52,7 +54,7 @@ pub(crate) mod sealed {
 }
 
 /// A model that a library exports.
-pub trait Exported: Described + sealed::Make + Sync {
+pub trait Exported: Described + sealed::Make {
     /// It as its description has it.
     fn described(&self) -> &dyn Described;
 }
@@ -95,6 +97,70 @@ impl<Me: Mechanism> Described for Of<Me> {
 
     fn nominals(&self) -> Option<Vec<f64>> {
         AtDefaults::of::<Me>().nominals()
+    }
+}
+
+/// A model that is made at run time: `make` gives it with these values of its parameters, and these inputs.
+pub struct MadeBy<F> {
+    /// Its tables.
+    pub description: &'static Description,
+    /// What makes it.
+    pub make: F,
+}
+
+impl<F, Mo> sealed::Make for MadeBy<F>
+where
+    F: Fn(&[f64], &[Input]) -> Result<Mo, ParameterError>,
+    Mo: Liftable<Dual>,
+{
+    fn make(&self, values: &[f64], signals: &Signals, t: f64) -> Result<Made, Fault> {
+        let model = (self.make)(values, &signals.inputs())?;
+        let values: Vec<Dual> = values.iter().map(|&value| Dual::new(value, 0.0)).collect();
+        Ok(Made { machine: Stood::at_start(model.machine(), t)?, slopes: Box::new(model.lifted(&values)?) })
+    }
+
+    fn check(&self, index: usize, value: f64) -> Result<(), ParameterError> {
+        self.description.parameters[index].check(value)
+    }
+}
+
+impl<F, Mo> Exported for MadeBy<F>
+where
+    F: Fn(&[f64], &[Input]) -> Result<Mo, ParameterError>,
+    Mo: Liftable<Dual>,
+{
+    fn described(&self) -> &dyn Described {
+        self
+    }
+}
+
+impl<F, Mo> MadeBy<F>
+where
+    F: Fn(&[f64], &[Input]) -> Result<Mo, ParameterError>,
+    Mo: Liftable<Dual>,
+{
+    fn at_defaults(&self) -> AtDefaults {
+        let description = self.description;
+        let defaults: Vec<f64> = description.parameters.iter().map(|parameter| parameter.default).collect();
+        AtDefaults { description, model: (self.make)(&defaults, &[]).ok().map(|model| model.machine()) }
+    }
+}
+
+impl<F, Mo> Described for MadeBy<F>
+where
+    F: Fn(&[f64], &[Input]) -> Result<Mo, ParameterError>,
+    Mo: Liftable<Dual>,
+{
+    fn description(&self) -> &'static Description {
+        self.description
+    }
+
+    fn dependencies(&self) -> Option<Vec<Vec<usize>>> {
+        self.at_defaults().dependencies()
+    }
+
+    fn nominals(&self) -> Option<Vec<f64>> {
+        self.at_defaults().nominals()
     }
 }
 

@@ -43,25 +43,38 @@ pub mod variables;
 
 pub use bg_model;
 pub use description::{Packing, Version, model_description, terminals_and_icons, token};
-pub use exported::{AtDefaults, Described, Exported, Of};
+pub use exported::{AtDefaults, Described, Exported, MadeBy, Of};
 pub use instance::{Fault, Instance, Interface};
 
 /// The category of log messages.
 pub(crate) const LOG_ERROR: &str = "logStatusError";
 
-/// Exports models, named by their types, from a library of `crate-type = ["cdylib"]`: graphs and scenes. Which of them an instance
-/// is of, its `modelDescription.xml` says. Once in a library.
+/// Exports models, named by their types, from a library of `crate-type = ["cdylib"]`: graphs and scenes. Which of them an
+/// instance is of, its `modelDescription.xml` says. Once in a library.
 #[macro_export]
 macro_rules! export {
     ($($model:ty),+ $(,)?) => {
+        $crate::export_found!(|_| Ok(vec![$(&$crate::Of::<$model>::NEW as &dyn $crate::Exported),+]));
+    };
+}
+
+/// Exports the models that are found in the folder of a unit's resources: by a function of that folder, where the host
+/// names one, that gives them or says why there are none. Once in a library.
+#[macro_export]
+macro_rules! export_found {
+    ($found:expr) => {
         const _: () = {
-            static MODELS: &[&dyn $crate::Exported] = &[$(&$crate::Of::<$model>::NEW),+];
+            fn models_of_resources(
+                resources: Option<::std::path::PathBuf>,
+            ) -> ::core::result::Result<::std::vec::Vec<&'static dyn $crate::Exported>, ::std::string::String> {
+                ($found)(resources)
+            }
 
             #[unsafe(no_mangle)]
             unsafe extern "C" fn fmi3InstantiateModelExchange(
                 name: *const ::core::ffi::c_char,
                 token: *const ::core::ffi::c_char,
-                _resources: *const ::core::ffi::c_char,
+                resources: *const ::core::ffi::c_char,
                 _visible: bool,
                 logging: bool,
                 environment: *mut ::core::ffi::c_void,
@@ -69,14 +82,18 @@ macro_rules! export {
             ) -> *mut ::core::ffi::c_void {
                 let logger = $crate::abi::Logger::new(environment, log, logging);
                 // SAFETY: the host hands over texts that end with 0, or none.
-                unsafe { $crate::abi::instantiate(MODELS, $crate::Interface::ModelExchange, name, token, logger) }
+                unsafe {
+                    let resources = $crate::abi::resources(resources);
+                    let interface = $crate::Interface::ModelExchange;
+                    $crate::abi::instantiate(|| models_of_resources(resources), interface, name, token, logger)
+                }
             }
 
             #[unsafe(no_mangle)]
             unsafe extern "C" fn fmi3InstantiateCoSimulation(
                 name: *const ::core::ffi::c_char,
                 token: *const ::core::ffi::c_char,
-                _resources: *const ::core::ffi::c_char,
+                resources: *const ::core::ffi::c_char,
                 _visible: bool,
                 logging: bool,
                 events: bool,
@@ -93,7 +110,16 @@ macro_rules! export {
                     return ::core::ptr::null_mut();
                 }
                 // SAFETY: the host hands over texts that end with 0, or none.
-                unsafe { $crate::abi::instantiate(MODELS, $crate::Interface::CoSimulation, name, token, logger) }
+                unsafe {
+                    let resources = $crate::abi::resources(resources);
+                    $crate::abi::instantiate(
+                        || models_of_resources(resources),
+                        $crate::Interface::CoSimulation,
+                        name,
+                        token,
+                        logger,
+                    )
+                }
             }
 
             #[unsafe(no_mangle)]
@@ -101,13 +127,23 @@ macro_rules! export {
                 name: *const ::core::ffi::c_char,
                 kind: ::core::ffi::c_int,
                 token: *const ::core::ffi::c_char,
-                _resources: *const ::core::ffi::c_char,
+                resources: *const ::core::ffi::c_char,
                 callbacks: *const $crate::abi::two::Callbacks,
                 _visible: ::core::ffi::c_int,
                 logging: ::core::ffi::c_int,
             ) -> *mut ::core::ffi::c_void {
                 // SAFETY: the host hands over texts that end with 0, or none, and its functions, or none.
-                unsafe { $crate::abi::two::instantiate(MODELS, kind, name, token, callbacks, logging) }
+                unsafe {
+                    let resources = $crate::abi::two::resources(resources);
+                    $crate::abi::two::instantiate(
+                        || models_of_resources(resources),
+                        kind,
+                        name,
+                        token,
+                        callbacks,
+                        logging,
+                    )
+                }
             }
         };
     };

@@ -5,6 +5,7 @@
 //! makes machines for [`bg_model::run::Simulation::over`]. They have the bits of generated code.
 
 mod blueprint;
+mod bundle;
 mod code;
 mod interpreted;
 mod machine;
@@ -14,6 +15,7 @@ mod text;
 
 pub use bg_compiler::source::syntax::files::{Open, Opened};
 pub use blueprint::Blueprint;
+pub use bundle::{Bundle, Chosen, STACK};
 pub use code::BackEnd;
 pub use interpreted::Interpreted;
 pub use text::{Counted, Fault, Graph, Model, UsedFile, Wanted, load, load_file, load_wanted, syntax_faults};

@@ -33,4 +33,20 @@ pub trait Maker: Send + Sync {
     /// # Panics
     /// There is no such model, or another number of values.
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError>;
+
+    /// What makes the model of this number in a functional mock-up unit without a library of its own; none by default.
+    fn prebuilt(&self, _model: usize) -> Option<Prebuilt> {
+        None
+    }
+}
+
+/// A library that is there already, and what it makes a model of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Prebuilt {
+    /// What the unit is to be called.
+    pub name: String,
+    /// The package whose library it is.
+    pub package: &'static str,
+    /// The resources of the unit: names and contents of files.
+    pub resources: Vec<(&'static str, Vec<u8>)>,
 }

@@ -19,6 +19,7 @@ mod values;
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 
 use crate::LOG_ERROR;
 use crate::description;
@@ -130,13 +131,27 @@ fn told(panic: &(dyn std::any::Any + Send)) -> &str {
     text.or_else(|| panic.downcast_ref::<String>().map(String::as_str)).unwrap_or("a fault inside")
 }
 
-/// The instance of the model among `models` that has this token; null where there is none.
+/// Where a unit's resources are, by the argument of FMI 3.0: the path of a folder; none where the host names none.
+///
+/// # Safety
+/// The text ends with 0, or is null.
+#[doc(hidden)]
+#[must_use]
+pub unsafe fn resources(path: *const c_char) -> Option<PathBuf> {
+    // SAFETY: not null, and it ends with 0.
+    (!path.is_null()).then(|| unsafe { CStr::from_ptr(path) }.to_string_lossy().into_owned().into())
+}
+
+/// The models that a library has for an instance, or why it has none.
+pub type Found = Result<Vec<&'static dyn Exported>, String>;
+
+/// The instance of the model among those that are `found` that has this token; null where there is none.
 ///
 /// # Safety
 /// The texts end with 0, or are null.
 #[doc(hidden)]
 pub unsafe fn instantiate(
-    models: &'static [&'static dyn Exported],
+    found: impl FnOnce() -> Found,
     interface: Interface,
     _name: *const c_char,
     token: *const c_char,
@@ -149,17 +164,20 @@ pub unsafe fn instantiate(
     // SAFETY: not null, and it ends with 0.
     let token = unsafe { CStr::from_ptr(token) }.to_string_lossy();
     let made = catch_unwind(AssertUnwindSafe(|| {
-        let model = models.iter().find(|model| description::token(model.described()) == token)?;
-        let instance = Instance::new(*model, interface);
-        Some(Box::new(Handle { instance, logger: logger.clone(), is_lost: false, experiment: (0.0, None) }))
-    }));
-    match made {
-        Ok(Some(handle)) => Box::into_raw(handle).cast(),
-        Ok(None) => {
-            logger.refuse(&format!(
+        let model = found()?.into_iter().find(|model| description::token(model.described()) == token);
+        let model = model.ok_or_else(|| {
+            format!(
                 "this library has no model with the instantiation token {token}: its modelDescription.xml is of another build; \
                  pack the unit again"
-            ));
+            )
+        })?;
+        let instance = Instance::new(model, interface);
+        Ok::<_, String>(Box::new(Handle { instance, logger: logger.clone(), is_lost: false, experiment: (0.0, None) }))
+    }));
+    match made {
+        Ok(Ok(handle)) => Box::into_raw(handle).cast(),
+        Ok(Err(fault)) => {
+            logger.refuse(&fault);
             std::ptr::null_mut()
         }
         Err(panic) => {

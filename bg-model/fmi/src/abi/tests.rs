@@ -56,12 +56,18 @@ impl Exported for Panics {
     }
 }
 
-static MODELS: &[&dyn Exported] = &[&Panics];
-
 fn instance(token: &str) -> *mut c_void {
     let (token, logger) = (CString::new(token).unwrap(), Logger::new(null_mut(), Some(log), false));
     // SAFETY: the token ends with 0.
-    unsafe { instantiate(MODELS, Interface::CoSimulation, std::ptr::null(), token.as_ptr(), logger) }
+    unsafe {
+        instantiate(
+            || Ok(vec![&Panics as &dyn Exported]),
+            Interface::CoSimulation,
+            std::ptr::null(),
+            token.as_ptr(),
+            logger,
+        )
+    }
 }
 
 #[test]

@@ -41,7 +41,7 @@ fn unit(model: &dyn Described, version: Version) -> (tempfile::TempDir, PathBuf)
     let identifier = model.description().name.to_lowercase();
     let path = folder.path().join(format!("{identifier}.fmu"));
     let packing = Packing { version, identifier, stop_time: 1.0 };
-    std::fs::write(&path, archive(model, &packing, &std::fs::read(library()).unwrap()).unwrap()).unwrap();
+    std::fs::write(&path, archive(model, &packing, &std::fs::read(library()).unwrap(), &[]).unwrap()).unwrap();
     (folder, path)
 }
 

@@ -257,7 +257,7 @@ fn without_a_pair_there_is_no_file() {
     assert_eq!(terminals_and_icons(&CLOSED), None);
     let has_file = |model: &dyn Described, version| {
         let packing = Packing { version, ..Packing::default() };
-        let bytes = archive(model, &packing, b"library").unwrap();
+        let bytes = archive(model, &packing, b"library", &[]).unwrap();
         let name = b"terminalsAndIcons/terminalsAndIcons.xml";
         bytes.windows(name.len()).any(|window| window == name)
     };
@@ -366,7 +366,7 @@ fn hosts_can_read_it() {
     ] {
         for version in VERSIONS {
             let path = folder.path().join("model.fmu");
-            std::fs::write(&path, archive(model, &Packing { version, ..Packing::default() }, b"library").unwrap())
+            std::fs::write(&path, archive(model, &Packing { version, ..Packing::default() }, b"library", &[]).unwrap())
                 .unwrap();
             let output = run(&[script.to_str().unwrap(), path.to_str().unwrap()]).unwrap();
             let errors = String::from_utf8_lossy(&output.stderr);

@@ -15,6 +15,7 @@ use super::arguments::FmuArguments;
 use super::{InputError, say};
 use crate::Program;
 use crate::files::whole;
+use crate::maker::Prebuilt;
 use crate::parameters::Values;
 
 /// A library that there is none of.
@@ -26,6 +27,11 @@ pub(super) enum LibraryError {
         folder.display()
     )]
     Absent { file: String, folder: PathBuf, model: &'static str },
+    #[error(
+        "there is no library {file} in {}: build it by `cargo build --release -p {package}`, or give it as --library FILE",
+        folder.display()
+    )]
+    Unbuilt { file: String, folder: PathBuf, package: &'static str },
     #[error("--library {}: {source}", path.display())]
     Unreadable { path: PathBuf, source: io::Error },
     #[error(
@@ -38,12 +44,16 @@ pub(super) enum LibraryError {
 pub(super) fn pack(program: &Program, arguments: &FmuArguments) -> Result<ExitCode, InputError> {
     let FmuArguments { library, out, t_end, .. } = arguments;
     let scene = program.scene_called(&arguments.scene);
-    let name = &program.texts.name;
+    let prebuilt = program.models.maker().prebuilt(scene.index);
+    let name = prebuilt.as_ref().map_or(&program.texts.name, |prebuilt| &prebuilt.name);
     let is_own = scene.name == program.scene;
-    let identifier = identifier(&if is_own { name.clone() } else { format!("{name}_{}", scene.name) });
-    let library = match library {
-        Some(path) => path.clone(),
-        None => beside_the_program(name, scene.description.name)?,
+    let identifier = identifier_of(&if is_own { name.clone() } else { format!("{name}_{}", scene.name) });
+    let library = match (library, &prebuilt) {
+        (Some(path), _) => path.clone(),
+        (None, Some(Prebuilt { package, .. })) => beside_the_program(&identifier_of(package))
+            .map_err(|(file, folder)| LibraryError::Unbuilt { file, folder, package })?,
+        (None, None) => beside_the_program(&format!("{}_fmu", identifier_of(name)))
+            .map_err(|(file, folder)| LibraryError::Absent { file, folder, model: scene.description.name })?,
     };
     let bytes = std::fs::read(&library);
     let bytes = bytes.map_err(|source| LibraryError::Unreadable { path: library.clone(), source })?;
@@ -56,29 +66,31 @@ pub(super) fn pack(program: &Program, arguments: &FmuArguments) -> Result<ExitCo
     let own = Values::new(scene.description.parameters);
     let machine = program.models.maker().make(scene.index, own.values(), &[]);
     let model = AtDefaults { description: scene.description, model: machine.ok().map(|machine| machine.model()) };
-    let unit = archive(&model, &packing, &bytes);
+    let resources = prebuilt.as_ref().map_or(&[][..], |prebuilt| &prebuilt.resources);
+    let unit = archive(&model, &packing, &bytes, resources);
     whole::write(&path, |file| file.write_all(&unit?))?;
     let (name, version, platform) = (scene.description.name, version.name(), bg_fmi::archive::platform(version));
     Ok(say(&format!("{}: {name} for FMI {version}, {platform}\n", path.display())))
 }
 
 /// A name of letters, digits and underscores, for a library in a unit.
-fn identifier(name: &str) -> String {
+fn identifier_of(name: &str) -> String {
     let text: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     if text.starts_with(|c: char| c.is_ascii_digit()) { format!("_{text}") } else { text }
 }
 
-/// The library of the program `name` where cargo puts it: beside the program, or above it where that is an example.
-fn beside_the_program(name: &str, model: &'static str) -> Result<PathBuf, LibraryError> {
+/// The library `name` where cargo puts it: beside the program, or above it where that is an example; else the file that
+/// is not there, and the folder where it should be.
+fn beside_the_program(name: &str) -> Result<PathBuf, (String, PathBuf)> {
     use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-    let file = format!("{DLL_PREFIX}{}_fmu{DLL_SUFFIX}", identifier(name));
+    let file = format!("{DLL_PREFIX}{name}{DLL_SUFFIX}");
     let program = std::env::current_exe().unwrap_or_default();
     let folder = program.parent().unwrap_or(Path::new(".")).to_owned();
     let above =
         if folder.ends_with("examples") { folder.parent().map(Path::to_owned) } else { Some(folder.join("examples")) };
     let found =
         std::iter::once(folder.clone()).chain(above).map(|folder| folder.join(&file)).find(|path| path.is_file());
-    found.ok_or(LibraryError::Absent { file, folder, model })
+    found.ok_or((file, folder))
 }
 
 /// Whether a library has the names of the standard among its symbols.
@@ -96,18 +108,18 @@ mod tests {
 
     #[test]
     fn identifiers_are_names_of_c() {
-        assert_eq!(["slider-crank", "3d", "a.b"].map(identifier), ["slider_crank", "_3d", "a_b"]);
+        assert_eq!(["slider-crank", "3d", "a.b"].map(identifier_of), ["slider_crank", "_3d", "a_b"]);
     }
 
     #[test]
     fn a_library_that_is_not_there_is_told_with_what_to_do() {
-        let fault = beside_the_program("no-such", "NoSuch").unwrap_err().to_string();
-        assert!(
-            fault.contains("no_such_fmu")
-                && fault.contains("`bg_fmi::export!(NoSuch);`")
-                && fault.contains("--library FILE"),
-            "{fault}"
-        );
+        let (file, folder) = beside_the_program("no_such_fmu").unwrap_err();
+        let own = LibraryError::Absent { file: file.clone(), folder: folder.clone(), model: "NoSuch" }.to_string();
+        let parts = ["no_such_fmu", "`bg_fmi::export!(NoSuch);`", "--library FILE"];
+        assert!(parts.iter().all(|part| own.contains(part)), "{own}");
+        let prebuilt = LibraryError::Unbuilt { file, folder, package: "bond-fmu" }.to_string();
+        let parts = ["no_such_fmu", "`cargo build --release -p bond-fmu`", "--library FILE"];
+        assert!(parts.iter().all(|part| prebuilt.contains(part)), "{prebuilt}");
         let library = b"..fmi3InstantiateModelExchange..";
         assert!(
             exports(library, Version::Three) && !exports(library, Version::Two) && !exports(b"text", Version::Three)

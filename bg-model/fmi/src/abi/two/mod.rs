@@ -9,9 +9,11 @@ mod exchange;
 mod steps;
 
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
+use std::path::PathBuf;
+
+use percent_encoding::percent_decode_str;
 
 use super::{Log, Logger};
-use crate::exported::Exported;
 use crate::instance::Interface;
 
 /// `fmi2Boolean`.
@@ -33,13 +35,40 @@ pub struct Callbacks {
     environment: *mut c_void,
 }
 
-/// The instance of the model among `models` that has this token, for an `fmi2Type`; null where there is none.
+/// Where a unit's resources are, by the argument of FMI 2.0: a URI of a folder of this machine (2.0.4, section 2.1.5);
+/// none of another, or where the host names none.
+///
+/// # Safety
+/// The text ends with 0, or is null.
+#[doc(hidden)]
+#[must_use]
+pub unsafe fn resources(uri: *const c_char) -> Option<PathBuf> {
+    // SAFETY: not null, and it ends with 0.
+    let uri = (!uri.is_null()).then(|| unsafe { CStr::from_ptr(uri) }.to_string_lossy())?;
+    folder(&uri)
+}
+
+/// The folder of a URI such as `file:///C:/a%20b` or `file:/a`.
+fn folder(uri: &str) -> Option<PathBuf> {
+    let rest = uri.strip_prefix("file:")?;
+    let path = match rest.strip_prefix("//") {
+        Some(rest) => rest.strip_prefix("localhost").unwrap_or(rest),
+        None => rest,
+    };
+    let path = percent_decode_str(path).decode_utf8().ok()?;
+    // Before the letter of a drive stands a stroke that is no part of the path.
+    let with_drive = path.strip_prefix('/').filter(|rest| rest.get(1..2) == Some(":"));
+    let path = with_drive.unwrap_or(&path);
+    (path.starts_with('/') || with_drive.is_some()).then(|| path.into())
+}
+
+/// The instance of the model among those that are `found` that has this token, for an `fmi2Type`; null where there is none.
 ///
 /// # Safety
 /// The texts end with 0, or are null; `callbacks` points to the host's functions, or is null.
 #[doc(hidden)]
 pub unsafe fn instantiate(
-    models: &'static [&'static dyn Exported],
+    found: impl FnOnce() -> super::Found,
     kind: c_int,
     name: *const c_char,
     token: *const c_char,
@@ -63,7 +92,7 @@ pub unsafe fn instantiate(
         }
     };
     // SAFETY: the texts are as this function asks for.
-    unsafe { super::instantiate(models, interface, name, token, logger) }
+    unsafe { super::instantiate(found, interface, name, token, logger) }
 }
 
 /// Functions whose arguments and meaning are those of a function of FMI 3.0.
@@ -78,3 +107,18 @@ macro_rules! as_in_three {
     )*};
 }
 use as_in_three;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn uris_of_folders_are_read() {
+        let path = |path: &str| Some(PathBuf::from(path));
+        assert_eq!(folder("file:///tmp/a%20b/resources"), path("/tmp/a b/resources"));
+        assert_eq!(folder("file:/tmp/resources"), path("/tmp/resources"));
+        assert_eq!(folder("file://localhost/tmp"), path("/tmp"));
+        assert_eq!(folder("file:///C:/Temp/resources"), path("C:/Temp/resources"));
+        assert_eq!(["file://elsewhere/tmp", "http://a/b", "/tmp", "file:"].map(folder), [None, None, None, None]);
+    }
+}
