@@ -64,7 +64,8 @@ impl EndMonitor {
         there.iter_mut().zip(x).zip(rate).for_each(|((there, x), rate)| *there = x + ahead * rate);
         system.pivots(t, x, negative, now);
         system.pivots(t + ahead, there, negative, soon);
-        let leads_through = |(now, soon): (&f64, &f64)| !(now * (now + STEPS * (soon - now) / AHEAD) > 0.0);
-        now.iter().zip(&*soon).position(leads_through).map(|k| joints[k])
+        // What is no number soon leads through zero as well.
+        let keeps_side = |(now, soon): (&f64, &f64)| now * (now + STEPS * (soon - now) / AHEAD) > 0.0;
+        now.iter().zip(&*soon).position(|pivot| !keeps_side(pivot)).map(|k| joints[k])
     }
 }
