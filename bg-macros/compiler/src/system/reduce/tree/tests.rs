@@ -1,0 +1,107 @@
+//! Bodies on hinges beside their literal graphs, in states that no run has chosen.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use crate::expr::{Environment, Id, Symbol, derivative, evaluate};
+use crate::random::Random;
+use crate::system::reduce::tests::{Draw, Scene, scene};
+
+/// A state with all outputs of `bodies` bodies and `others`.
+fn observed(bodies: usize, others: &str) -> String {
+    let mut text = String::new();
+    for k in 0..bodies {
+        let _ = write!(
+            text,
+            "x{k}: m = b{k}.position; r{k} = b{k}.orientation; p{k}: kg*m/s = b{k}.p; h{k}: kg*m^2/s = b{k}.h; "
+        );
+    }
+    format!("observe {{ {text} {others} }}")
+}
+
+/// The operations of a rate after the last reduction.
+fn operations(scene: &Scene) -> usize {
+    scene.report.counts.last().expect("a count").operations
+}
+
+/// Panics unless, in states at random, the literal states have the rates that the reduced model gives their images, and
+/// all outputs and energies are the same.
+fn agrees(scene: &Scene) {
+    let (mut literal, mut reduced) = (scene.literal.clone(), scene.reduced.clone());
+    let mut draw = Draw(Random::new(7));
+    let outputs: Vec<Id> = reduced.outputs.iter().map(|output| output.value).collect();
+    let seeds: BTreeMap<Symbol, Id> =
+        reduced.states.iter().enumerate().map(|(k, state)| (Symbol::state(k), state.rate)).collect();
+    let rates = derivative(&mut reduced.pool, &outputs, &seeds);
+    let roots: Vec<Id> = outputs.iter().chain(&rates).chain([&reduced.stored]).copied().collect();
+    let values: Vec<Id> = literal.outputs.iter().map(|output| output.value).collect();
+    let seeds: BTreeMap<Symbol, Id> =
+        literal.states.iter().enumerate().map(|(k, state)| (Symbol::state(k), state.rate)).collect();
+    let slopes = derivative(&mut literal.pool, &values, &seeds);
+    let others: Vec<Id> = values.iter().chain(&slopes).chain([&literal.stored]).copied().collect();
+    for _ in 0..4 {
+        let states: Vec<f64> = reduced.states.iter().map(|_| draw.number()).collect();
+        let negative = vec![false; reduced.switches.len()];
+        let found = evaluate(&reduced.pool, &roots, &Environment { states: &states, negative: &negative, ..Environment::default() });
+        let by_name: BTreeMap<&str, f64> =
+            reduced.outputs.iter().map(|output| output.name.as_str()).zip(found.iter().copied()).collect();
+        let value = |name: &str| {
+            let Some((body, rest)) = name.strip_prefix('b').and_then(|name| name.split_once('.')) else { return 0.0 };
+            let (letter, suffix) = match rest.split_once('_') {
+                Some(("position", suffix)) => ('x', suffix),
+                Some(("orientation", suffix)) => ('r', suffix),
+                Some(("linear.p", suffix)) => ('p', suffix),
+                Some(("angular.p", suffix)) => ('h', suffix),
+                _ => return 0.0,
+            };
+            by_name[format!("{letter}{body}_{suffix}").as_str()]
+        };
+        let full: Vec<f64> = literal.states.iter().map(|state| value(&state.name)).collect();
+        let negative = vec![false; literal.switches.len()];
+        let expected = evaluate(&literal.pool, &others, &Environment { states: &full, negative: &negative, ..Environment::default() });
+        let size = expected.iter().fold(1.0_f64, |size, value| size.max(value.abs()));
+        for (k, (found, expected)) in found.iter().zip(&expected).enumerate() {
+            let name = &reduced.outputs[k % reduced.outputs.len()].name;
+            assert!((found - expected).abs() < 1e-10 * size, "{k} {name}: {found} {expected}\n{}", scene.report);
+        }
+    }
+}
+
+/// Hinges one after the other about these axes, with offsets and tensors that are not diagonal.
+fn chain(axes: &[&str], clauses: &str) -> String {
+    let mut text = "gravity [0, 0, -9.81]; ground { point O = [0, 0, 0.3]; }".to_owned();
+    let mut place = [0.0, 0.0, 0.3];
+    for (k, axis) in axes.iter().enumerate() {
+        let upper = if k == 0 { "ground.O".to_owned() } else { format!("b{}.low", k - 1) };
+        let [x, y, z] = place;
+        let _ = write!(
+            text,
+            "body b{k} {{ mass {}; inertia [[0.1, 0.01, 0.02], [0.01, 0.2, -0.03], [0.02, -0.03, 0.15]];
+                point top = [0.1, 0.2, 0.5]; point low = [0.2, -0.1, -0.4]; start top at [{x}, {y}, {z}]; }}
+             joint j{k}: revolute {axis} ({upper} -> b{k}.top) {{ rigid; }} {clauses}",
+            1 + k
+        );
+        place = [x + 0.1, y - 0.3, z - 0.9];
+    }
+    text
+}
+
+#[test]
+fn a_pendulum_about_any_axis_has_an_angle_and_a_speed() {
+    for axis in ["x", "y"] {
+        let scene = scene(&format!("{} {}", chain(&[axis], ""), observed(1, "")), "tune {}");
+        assert_eq!(scene.left(), ["j0.q", "j0.u"], "{}", scene.report);
+        agrees(&scene);
+    }
+}
+
+#[test]
+fn hinges_one_after_the_other_move_as_their_bodies_do() {
+    for (axes, expected) in [(&["y", "z"][..], 0), (&["z", "x", "y"], 0), (&["x", "x"], 0)] {
+        let scene = scene(&format!("{} {}", chain(axes, ""), observed(axes.len(), "")), "tune {}");
+        assert_eq!(scene.left().len(), 2 * axes.len(), "{}", scene.report);
+        agrees(&scene);
+        println!("{axes:?} {}", operations(&scene));
+        let _ = expected;
+    }
+}
