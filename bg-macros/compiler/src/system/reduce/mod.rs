@@ -23,7 +23,7 @@ mod tree;
 mod turned;
 
 use crate::expr::{Branch, Id, Node, Pool, Symbol};
-use crate::system::equations::StateEquations;
+use crate::system::equations::{Origin, StateEquations};
 
 pub use reaction::solve as solve_reactions;
 pub use report::{Count, Fate, Kept, Report};
@@ -118,15 +118,28 @@ pub fn for_scene(
 ) -> (StateEquations, Report) {
     let mut report = Report::new(&equations);
     report.count("literal", equations.states.len(), operations(&mut equations));
-    let (first, others) = PASSES.split_at(1);
-    run(first, &mut equations, wanted, &mut report, operations);
+    let (parameters, others) = PASSES.split_at(1);
+    run(parameters, &mut equations, wanted, &mut report, operations);
     let by_tree = in_joint_coordinates(&equations, wanted, &report, operations);
-    run(others, &mut equations, wanted, &mut report, operations);
-    match by_tree {
-        Some((changed, told)) if cost(&changed, &told) < cost(&equations, &report) => (changed, told),
-        _ => (equations, report),
+    let (folding, joints) = others.split_at(3);
+    run(folding, &mut equations, wanted, &mut report, operations);
+    if let Some((changed, told)) = by_tree {
+        let hinges = changed.states.iter().filter(|state| matches!(state.origin, Origin::Hinge(_))).count();
+        // The matrix of all reactions takes seconds and more to factor for bodies that keep all their states.
+        let is_long = hinges > SHORT && equations.states.len() >= KEPT * hinges;
+        if is_long {
+            return (changed, told);
+        }
+        run(joints, &mut equations, wanted, &mut report, operations);
+        return if cost(&changed, &told) < cost(&equations, &report) { (changed, told) } else { (equations, report) };
     }
+    run(joints, &mut equations, wanted, &mut report, operations);
+    (equations, report)
 }
+
+/// More hinges are not compared with the matrix of all reactions, where bodies keep at least so many states each.
+const SHORT: usize = 4;
+const KEPT: usize = 14;
 
 fn run(
     passes: &[Pass],

@@ -11,7 +11,7 @@ use super::bodies::{Body, symbols, velocity};
 use super::numbers::{self, Matrix, Vector};
 use crate::expr::{Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute};
 use crate::system::Value;
-use crate::system::equations::{Kind, StateEquations};
+use crate::system::equations::StateEquations;
 use crate::system::reduce::joined::Choice;
 use crate::system::reduce::{closing, friction, is_constant};
 
@@ -105,10 +105,14 @@ impl Hinge {
 
     /// The child's axes in the parent's.
     pub fn relative(&self, pool: &mut Pool, cosine: Id, sine: Id) -> Value {
-        let [first, second] = [self.frames[0], numbers::transposed(&self.frames[1])].map(|of| numbers::matrix(pool, &of));
-        let (zero, one, minus) = (pool.zero(), pool.one(), pool.neg(sine));
-        let turn = Value(vec![cosine, minus, zero, sine, cosine, zero, zero, zero, one]);
-        first.multiply(pool, &turn).multiply(pool, &second)
+        // By numbers as far as these go, so that no rounding stays beside symbols.
+        let back = numbers::transposed(&self.frames[1]);
+        let parts = [[1, 0, 0, 0, 1, 0, 0, 0, 0], [0, -1, 0, 1, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0, 0, 0, 1]];
+        let parts = parts.map(|part| {
+            let turn = numbers::product(&self.frames[0], &part.map(f64::from));
+            numbers::product(&turn, &back)
+        });
+        Value((0..9).map(|k| pool.linear(parts[2][k], &[(cosine, parts[0][k]), (sine, parts[1][k])])).collect())
     }
 }
 
@@ -121,13 +125,32 @@ pub(super) fn of(equations: &mut StateEquations, bodies: &[Body], starts: &Envir
         let states = body.place.iter().chain(&body.axes).chain(&body.linear).chain(&body.angular);
         owner.extend(states.map(|&state| (Symbol::state(state), index)));
     }
+    let mut loaded = Loaded::new();
+    for (index, state) in equations.states.iter().enumerate() {
+        for symbol in equations.pool.symbols(&[state.rate]) {
+            if matches!(symbol, Symbol::Multiplier(_)) {
+                loaded.entry(symbol).or_default().push(index);
+            }
+        }
+    }
+    let given = Given { owner, loaded, starts };
     let joints = closing::of_joints(&equations.reactions, 0..rigid);
-    joints.into_iter().filter_map(|rows| hinge(equations, bodies, (&owner, starts), rows)).collect()
+    joints.into_iter().filter_map(|rows| hinge(equations, bodies, &given, rows)).collect()
 }
 
-type Given<'a> = (&'a BTreeMap<Symbol, usize>, &'a Environment<'a>);
+/// The states in whose rates each multiplier is.
+type Loaded = BTreeMap<Symbol, Vec<usize>>;
 
-fn hinge(equations: &mut StateEquations, bodies: &[Body], (owner, starts): Given<'_>, rows: Vec<usize>) -> Option<Hinge> {
+/// What is known of all bodies.
+struct Given<'a> {
+    /// Whose states and velocities symbols are.
+    owner: BTreeMap<Symbol, usize>,
+    loaded: Loaded,
+    starts: &'a Environment<'a>,
+}
+
+fn hinge(equations: &mut StateEquations, bodies: &[Body], given: &Given<'_>, rows: Vec<usize>) -> Option<Hinge> {
+    let Given { owner, loaded, starts } = given;
     if rows.len() != 5 {
         return None;
     }
@@ -206,7 +229,7 @@ fn hinge(equations: &mut StateEquations, bodies: &[Body], (owner, starts): Given
     let hinge = Hinge { name, rows, parent, child, frames, at };
     let is_proved = holds(equations, bodies, &hinge, (&flows, &gaps))
         && starts_so(equations, bodies, &hinge)
-        && works_not(equations, bodies, &hinge, &flows);
+        && works_not(equations, bodies, &hinge, (&flows, loaded));
     is_proved.then_some(hinge)
 }
 
@@ -291,8 +314,8 @@ fn fits_at_start(equations: &mut StateEquations, bodies: &[Body], row: usize) ->
     pool.as_number(start).map_or_else(|| same_polynomial(pool, start, zero), |start| start.abs() < 1e-12)
 }
 
-/// Whether each reaction acts on the bodies' momenta alone and works on nothing but the flow of its row.
-fn works_not(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, flows: &[Id]) -> bool {
+/// Whether each reaction acts linearly on bodies' momenta alone and works on nothing but the flow of its row.
+fn works_not(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, (flows, loaded): (&[Id], &Loaded)) -> bool {
     let momenta: BTreeMap<usize, Symbol> = bodies
         .iter()
         .enumerate()
@@ -302,16 +325,16 @@ fn works_not(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, flo
         })
         .collect();
     let StateEquations { pool, states, reactions, .. } = equations;
-    let rates: Vec<Id> = states.iter().map(|state| state.rate).collect();
     for (&row, &flow) in hinge.rows.iter().zip(flows) {
-        let loads = partial(pool, &rates, reactions[row].multiplier);
+        let multiplier = reactions[row].multiplier;
         let mut powers = Vec::new();
-        for (state, &load) in loads.iter().enumerate().filter(|(_, load)| !pool.is_zero(**load)).collect::<Vec<_>>() {
-            if states[state].origin.kind() == Kind::Integral {
-                return false;
-            }
+        for &state in loaded.get(&multiplier).into_iter().flatten() {
+            let load = partial(pool, &[states[state].rate], multiplier)[0];
             let Some(&speed) = momenta.get(&state) else { return false };
             let speed = pool.symbol(speed);
+            if pool.symbols(&[load]).contains(&multiplier) {
+                return false;
+            }
             powers.push(pool.mul(load, speed));
         }
         let power = pool.sum(&powers);

@@ -97,11 +97,70 @@ fn a_pendulum_about_any_axis_has_an_angle_and_a_speed() {
 
 #[test]
 fn hinges_one_after_the_other_move_as_their_bodies_do() {
-    for (axes, expected) in [(&["y", "z"][..], 0), (&["z", "x", "y"], 0), (&["x", "x"], 0)] {
+    for (axes, expected) in [(&["y", "z"][..], 95), (&["z", "x", "y"], 409), (&["x", "x"], 67)] {
         let scene = scene(&format!("{} {}", chain(axes, ""), observed(axes.len(), "")), "tune {}");
         assert_eq!(scene.left().len(), 2 * axes.len(), "{}", scene.report);
         agrees(&scene);
-        println!("{axes:?} {}", operations(&scene));
-        let _ = expected;
+        assert_eq!(operations(&scene), expected, "{axes:?}");
+    }
+}
+
+/// Two bodies on one, one of them on a hinge whose axis is along no coordinate axis.
+const BRANCHES: &str = "body b2 { mass 3; inertia [0.1, 0.2, 0.3]; point top = [0, 0.1, 0.2] turned rotation_x(0.4); start top at [0.3, -0.3, -0.6];
+        start turned rotation_y(0.3); }
+    joint j2: revolute y (b0.side -> b2.top) { rigid; }";
+
+fn branches(axes: &[&str], others: &str) -> String {
+    let side = "point side = [0.3, -0.1, -0.4 + 0.1] turned rotation_y(0.3) * rotation_x(0.4);";
+    chain(axes, "").replacen("point low", &format!("{side} point low"), 1)
+        + &BRANCHES.replace("[0.3, -0.3, -0.6]", "[0.2, -0.3, -0.5]")
+        + others
+}
+
+#[test]
+fn a_tree_with_branches_moves_as_its_bodies_do() {
+    let scene = scene(&format!("{} {}", branches(&["z", "x"], ""), observed(3, "")), "tune {}");
+    assert_eq!(scene.left().len(), 6, "{}", scene.report);
+    agrees(&scene);
+}
+
+/// What acts about hinges, on bodies and between them, by laws of angles and speeds.
+#[test]
+fn loads_of_all_kinds_are_those_of_the_bodies() {
+    let loads = "drive m on j1 torque = 3 - 2 * j1.angle - 0.3 * j1.speed; drive n on j0 torque = 1.5 * j1.speed;
+        drive f on b1.low force = [1, 2, 3]; drive twist on b1 torque = [0.3, 0, 0.1];
+        spring s (ground.O -> b1.low) { stiffness 20; length 0.1; damping 0.4; }";
+    let others = "a: rad = j1.angle; w: rad/s = j1.speed; e: W = m.power;";
+    let scene = scene(&format!("{} {loads} {}", chain(&["y", "z"], ""), observed(2, others)), "tune {}");
+    assert_eq!(scene.left().len(), 4, "{}", scene.report);
+    agrees(&scene);
+}
+
+#[test]
+#[ignore]
+fn timing() {
+    for n in [8, 16, 32, 64] {
+        let axes: Vec<&str> = (0..n).map(|k| ["y", "z"][k % 2]).collect();
+        let text = chain(&axes, "") + &(0..n).map(|k| format!("a{k} = j{k}.angle; ")).fold("observe { ".to_owned(), |a, b| a + &b) + "}";
+        let before = std::time::Instant::now();
+        let text = format!("graph G {{\n{text}\nscene Reduced {{ tune {{}} }}\n}}");
+        let source = crate::source::syntax::parse(text.parse().unwrap()).unwrap();
+        let variant = crate::source::scene::variants(&source.graphs[0]).unwrap().remove(1);
+        let crate::source::scene::Variant { scene: Some(scene), .. } = &variant else { panic!() };
+        let derived = crate::pipeline::derive(&variant.graph).unwrap().equations;
+        let wanted = crate::system::reduce::expectation::wanted(scene, &derived).unwrap();
+        let derive = before.elapsed();
+        let before = std::time::Instant::now();
+        let mut changed = derived.clone();
+        let mut report = crate::system::reduce::Report::new(&changed);
+        super::super::fold_parameters(&mut changed, &wanted);
+        super::put(&mut changed, &mut report).unwrap();
+        let put = before.elapsed();
+        let before = std::time::Instant::now();
+        let count = crate::program::rate_operations(&mut changed);
+        println!("{n}: derive {derive:?}, put {put:?}, count {count} {:?}", before.elapsed());
+        let before = std::time::Instant::now();
+        let _ = crate::system::reduce::for_scene(derived, &wanted, &mut crate::program::rate_operations);
+        println!("all {:?}", before.elapsed());
     }
 }
