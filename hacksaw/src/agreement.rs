@@ -237,14 +237,3 @@ fn kind(name: &str) -> &str {
     let word = AXES.iter().find_map(|axis| word.strip_suffix(axis)?.strip_suffix('_')).unwrap_or(word);
     word.trim_end_matches('_')
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn kinds_are_names_without_numbers() {
-        let kinds = ["C2_x", "R3_11", "gap_12", "F45_x", "Fcut_x", "stored_energy", "crank_angle"].map(kind);
-        assert_eq!(kinds, ["C", "R", "gap", "F", "Fcut", "stored_energy", "crank_angle"]);
-    }
-}

@@ -64,17 +64,3 @@ pub fn add_angles(run: &mut Recording) -> Result<(), MissingColumn> {
     }
     Ok(())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn whole_turns_are_counted() {
-        let angles = (0..100).map(|k| {
-            let angle = f64::from(k) * 0.5;
-            angle.sin().atan2(angle.cos())
-        });
-        assert!((continued(angles).last().unwrap() - 49.5).abs() < 1e-12);
-    }
-}

@@ -8,6 +8,7 @@
 //! | [`columns`] | which columns the paper's figures and its reference have |
 //! | [`checks`] | does the motion show what the paper says of it |
 //! | [`figures`] | what the paper's figures 4 to 19 look like |
+//! | [`sources`] | which parameters the paper gives, which are assumed |
 //! | [`summary`] | energy, gaps and crank speed of a run |
 //! | [`precision`] | which cases are measured, and their stored solutions |
 //! | [`command`] | the program |
@@ -23,7 +24,7 @@ pub mod mechanism;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod precision;
 pub mod scenes;
-mod sources;
+pub mod sources;
 pub mod summary;
 
 pub use mechanism::Mechanism;

@@ -57,8 +57,8 @@ pub enum Own {
     Serve {
         #[command(flatten)]
         served: Served,
-        /// The folder of the page, as `cargo run --release -p bond-page -- FOLDER` writes it; `bond-site` beside this program unless
-        /// given
+        /// The folder of the page, as `cargo run --release -p bond-page -- FOLDER` writes it; `bond-site` beside this
+        /// program unless given
         #[arg(long, value_name = "FOLDER")]
         page: Option<PathBuf>,
     },

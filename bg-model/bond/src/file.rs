@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use bg_compiler::source::syntax::files::gather;
 use bg_import::{Format, Options, import_file};
-use bg_loaded::{Bundle, Fault, Graph, Opened, STACK, load_file};
+use bg_loaded::{Bundle, Fault, Graph, Opened, load_file, on_a_large_stack};
 use bg_workbench::files::console;
 use thiserror::Error;
 
@@ -90,8 +90,7 @@ pub fn read_text(path: &Path) -> Result<Text, FileFault> {
 
 /// A file that a text uses.
 fn open(path: &Path) -> Result<Opened, String> {
-    let Text { path, text } = read(path).map_err(|fault| fault.to_string())?;
-    Ok(Opened { file: itself(&path), text })
+    Ok(read(path).map_err(|fault| fault.to_string())?.opened())
 }
 
 /// The file that a path leads to; the path where it leads to none, as that of a text from elsewhere.
@@ -100,6 +99,11 @@ fn itself(path: &Path) -> PathBuf {
 }
 
 impl Text {
+    /// It as the compiler takes it.
+    fn opened(&self) -> Opened {
+        Opened { file: itself(&self.path), text: self.text.clone() }
+    }
+
     /// The text, if a reader can follow it.
     fn checked(self) -> Result<Self, FileFault> {
         if self.is_deep() { Err(FileFault::Deep(self.path)) } else { Ok(self) }
@@ -180,8 +184,8 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
             found.borrow_mut().push(path.to_owned());
             open(path)
         };
-        if let Ok(Text { path, text }) = read(&path) {
-            drop(gather(&path, Opened { file: itself(&path), text }, &open));
+        if let Ok(text) = read(&path) {
+            drop(gather(&path, text.opened(), &open));
         }
         found.into_inner()
     });
@@ -190,8 +194,8 @@ pub fn files(path: &Path) -> Vec<PathBuf> {
 
 /// A text with all files that it uses, as data.
 #[must_use]
-pub fn bundle(Text { path, text }: &Text) -> Bundle {
-    Bundle::gathered(path, Opened { file: itself(path), text: text.clone() }, &open)
+pub fn bundle(text: &Text) -> Bundle {
+    Bundle::gathered(&text.path, text.opened(), &open)
 }
 
 /// The graphs of a text.
@@ -202,12 +206,7 @@ pub fn bundle(Text { path, text }: &Text) -> Bundle {
 /// # Panics
 /// The machine has no memory for a thread.
 pub fn graphs(text: &Text, wanted: &Wanted) -> Result<Vec<Graph>, Vec<Fault>> {
-    let (Text { path, text }, wanted) = (text.clone(), wanted.clone());
-    let compiler = std::thread::Builder::new().stack_size(STACK).spawn(move || {
-        let first = Opened { file: itself(&path), text };
-        wanted.told(|wanted| load_file(&path, first, &open, wanted))
-    });
-    compiler.expect("a thread can be started").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    on_a_large_stack(|| wanted.told(|wanted| load_file(&text.path, text.opened(), &open, wanted)))
 }
 
 #[cfg(test)]

@@ -18,7 +18,8 @@ use arguments::{Asked, Call, Own};
 use bg_loaded::BackEnd;
 use bg_workbench::Program;
 use bg_workbench::files::console;
-use bond_graph::{faults, file, maker, serve};
+use bond_graph::maker::{self, Source};
+use bond_graph::{faults, file, serve};
 use served::Served;
 
 fn main() -> ExitCode {
@@ -68,9 +69,7 @@ fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -
     match maker::Loaded::of(graphs, graph.as_deref()) {
         Ok(loaded) => {
             let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into));
-            // What a unit has of it.
-            let is_for_unit = command.first().is_some_and(|command| command == "fmu");
-            let loaded = if is_for_unit { loaded.of_text(file::bundle(&read), most) } else { loaded };
+            let loaded = loaded.of_source(Source { text: read, gather: file::bundle, most });
             let loaded = if is_interpreted { loaded.by(BackEnd::Interpreter) } else { loaded };
             let program = Program::with(loaded).on_file("bond", &file.display().to_string());
             program.version(env!("CARGO_PKG_VERSION")).main(words.chain(options))

@@ -12,13 +12,26 @@ use bg_model::parameters::ParameterError;
 use bg_workbench::machine::{Machine, Studied};
 use bg_workbench::maker::{Maker, Prebuilt};
 
+use crate::text::Text;
+
+/// The text of a graph.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The text.
+    pub text: Text,
+    /// What gathers the files that it uses.
+    pub gather: fn(&Text) -> Bundle,
+    /// The most statements of a graph with its repetitions and parts written out; none: 20000.
+    pub most: Option<usize>,
+}
+
 /// A graph of a text.
 #[derive(Clone, Debug)]
 pub struct Loaded {
     graph: Graph,
     back_end: BackEnd,
-    /// The text, and the most statements of it, where a unit may be made of it.
-    text: Option<(Bundle, Option<usize>)>,
+    /// What a unit of it is made of, where there may be one.
+    source: Option<Source>,
 }
 
 impl Loaded {
@@ -38,7 +51,7 @@ impl Loaded {
             None => return Err(format!("which graph? Say --graph NAME: there are {}", names())),
         };
         let graph = graphs.into_iter().nth(place).expect("it has this place");
-        Ok(Self { graph, back_end: BackEnd::default(), text: None })
+        Ok(Self { graph, back_end: BackEnd::default(), source: None })
     }
 
     /// The same, whose models are evaluated by this back end.
@@ -47,10 +60,10 @@ impl Loaded {
         Self { back_end, ..self }
     }
 
-    /// The same, of this text, of which a graph has so many statements at most.
+    /// The same, of this text.
     #[must_use]
-    pub fn of_text(self, text: Bundle, most: Option<usize>) -> Self {
-        Self { text: Some((text, most)), ..self }
+    pub fn of_source(self, source: Source) -> Self {
+        Self { source: Some(source), ..self }
     }
 
     fn blueprint(&self, model: usize) -> &Arc<Blueprint> {
@@ -78,10 +91,10 @@ impl Maker for Loaded {
     }
 
     fn prebuilt(&self, model: usize) -> Option<Prebuilt> {
-        let (text, most) = self.text.as_ref()?;
+        let Source { text, gather, most } = self.source.as_ref()?;
         let (graph, model) = (self.graph.name.clone(), self.graph.models[model].description.name.to_owned());
-        let chosen = Chosen { text: text.clone(), graph, model, most: *most };
+        let chosen = Chosen { text: gather(text), graph, model, most: *most };
         let content = serde_json::to_vec(&chosen).expect("paths of text are text");
-        Some(Prebuilt { name: text.name(), package: "bond-fmu", resources: vec![(Chosen::FILE, content)] })
+        Some(Prebuilt { name: chosen.text.name(), package: "bond-fmu", resources: vec![(Chosen::FILE, content)] })
     }
 }

@@ -5,6 +5,7 @@
 
 use std::net::Ipv4Addr;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use thiserror::Error;
 use tiny_http::{Header, Method, Request, Response, Server};
@@ -40,8 +41,7 @@ pub fn usual() -> PathBuf {
     program.parent().map_or_else(|| FOLDER.into(), |folder| folder.join(FOLDER))
 }
 
-/// Starts to answer, in a thread of its own, on a port of this machine that others do not reach; 0 is a free one. Gives
-/// the address of the page.
+/// Starts to serve the page in a folder, by [`answering`]; gives its address.
 ///
 /// # Errors
 /// [`ServeFault`].
@@ -49,18 +49,36 @@ pub fn start(folder: &Path, port: u16) -> Result<String, ServeFault> {
     if !folder.join(INDEX).is_file() {
         return Err(ServeFault::NoPage(folder.to_owned()));
     }
+    let folder = folder.to_owned();
+    answering(port, move |request| answer(request, &folder))
+}
+
+/// Starts to answer each request in a thread of its own, since an answer may wait, or be left unread for a while: on a
+/// port of this machine that others do not reach; 0 is a free one. Gives the address.
+///
+/// # Errors
+/// The port cannot be had.
+pub fn answering(port: u16, answer: impl Fn(Request) + Send + Sync + 'static) -> Result<String, ServeFault> {
     let server = Server::http((Ipv4Addr::LOCALHOST, port));
     let server = server.map_err(|fault| ServeFault::Port { port, fault: fault.to_string() })?;
     let address = format!("http://{}/", server.server_addr());
-    let folder = folder.to_owned();
+    let answer = Arc::new(answer);
     std::thread::spawn(move || {
-        // A browser may leave an answer unread for a while, so each has a thread.
         for request in server.incoming_requests() {
-            let folder = folder.clone();
-            std::thread::spawn(move || answer(request, &folder));
+            let answer = Arc::clone(&answer);
+            std::thread::spawn(move || answer(request));
         }
     });
     Ok(address)
+}
+
+/// A line in the head of an answer.
+///
+/// # Panics
+/// It is no ASCII.
+#[must_use]
+pub fn header(name: &str, value: &str) -> Header {
+    Header::from_bytes(name, value).expect("ASCII")
 }
 
 fn answer(request: Request, folder: &Path) {
@@ -71,7 +89,6 @@ fn answer(request: Request, folder: &Path) {
     };
     let is_asked = matches!(request.method(), Method::Get | Method::Head);
     let file = name.filter(|_| is_asked).and_then(|name| Some((kind(name), std::fs::read(folder.join(name)).ok()?)));
-    let header = |name: &str, value: &str| Header::from_bytes(name, value).expect("ASCII");
     // A browser that has gone away is no fault.
     let _ = match file {
         Some((kind, bytes)) => request.respond(

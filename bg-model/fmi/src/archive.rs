@@ -1,8 +1,8 @@
 //! A unit as a file: the archive of a library and its description.
 //!
 //! In: a model, how it is packed, the bytes of its library. Out: the bytes of NAME.fmu: `modelDescription.xml`, the
-//! library in the folder of its platform, its resources, and what tells variables that belong together, if any do. Source: FMI 3.0.1,
-//! section 2.5, and 2.0.4, section 2.3.
+//! library in the folder of its platform, its resources, and what tells variables that belong together, if any do.
+//! Source: FMI 3.0.1, section 2.5, and 2.0.4, section 2.3.
 
 use std::io::{self, Cursor, Error, Write};
 

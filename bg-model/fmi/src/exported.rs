@@ -100,19 +100,18 @@ impl<Me: Mechanism> Described for Of<Me> {
     }
 }
 
-/// A model that is made at run time: `make` gives it with these values of its parameters, and these inputs.
-pub struct MadeBy<F> {
+/// What makes a model at run time, with these values of its parameters, and these inputs.
+pub type Make = dyn Fn(&[f64], &[Input]) -> Result<Rc<dyn Liftable<Dual>>, ParameterError> + Send + Sync;
+
+/// A model that is made at run time.
+pub struct MadeBy {
     /// Its tables.
     pub description: &'static Description,
     /// What makes it.
-    pub make: F,
+    pub make: Box<Make>,
 }
 
-impl<F, Mo> sealed::Make for MadeBy<F>
-where
-    F: Fn(&[f64], &[Input]) -> Result<Mo, ParameterError>,
-    Mo: Liftable<Dual>,
-{
+impl sealed::Make for MadeBy {
     fn make(&self, values: &[f64], signals: &Signals, t: f64) -> Result<Made, Fault> {
         let model = (self.make)(values, &signals.inputs())?;
         let values: Vec<Dual> = values.iter().map(|&value| Dual::new(value, 0.0)).collect();
@@ -124,21 +123,13 @@ where
     }
 }
 
-impl<F, Mo> Exported for MadeBy<F>
-where
-    F: Fn(&[f64], &[Input]) -> Result<Mo, ParameterError>,
-    Mo: Liftable<Dual>,
-{
+impl Exported for MadeBy {
     fn described(&self) -> &dyn Described {
         self
     }
 }
 
-impl<F, Mo> MadeBy<F>
-where
-    F: Fn(&[f64], &[Input]) -> Result<Mo, ParameterError>,
-    Mo: Liftable<Dual>,
-{
+impl MadeBy {
     fn at_defaults(&self) -> AtDefaults {
         let description = self.description;
         let defaults: Vec<f64> = description.parameters.iter().map(|parameter| parameter.default).collect();
@@ -146,11 +137,7 @@ where
     }
 }
 
-impl<F, Mo> Described for MadeBy<F>
-where
-    F: Fn(&[f64], &[Input]) -> Result<Mo, ParameterError>,
-    Mo: Liftable<Dual>,
-{
+impl Described for MadeBy {
     fn description(&self) -> &'static Description {
         self.description
     }

@@ -49,8 +49,8 @@ pub use instance::{Fault, Instance, Interface};
 /// The category of log messages.
 pub(crate) const LOG_ERROR: &str = "logStatusError";
 
-/// Exports models, named by their types, from a library of `crate-type = ["cdylib"]`: graphs and scenes. Which of them an
-/// instance is of, its `modelDescription.xml` says. Once in a library.
+/// Exports models, named by their types, from a library of `crate-type = ["cdylib"]`: graphs and scenes. Which of them
+/// an instance is of, its `modelDescription.xml` says. Once in a library.
 #[macro_export]
 macro_rules! export {
     ($($model:ty),+ $(,)?) => {

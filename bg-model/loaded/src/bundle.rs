@@ -10,10 +10,7 @@ use bg_compiler::source::syntax::files::{Open, Opened, gather};
 use serde::{Deserialize, Serialize};
 
 use crate::blueprint::Blueprint;
-use crate::text::{Counted, Fault, Graph, Wanted, load_file};
-
-/// The stack of the compiler, bytes: laws may be long.
-pub const STACK: usize = 1 << 28;
+use crate::text::{Counted, Fault, Graph, Wanted, load_file, on_a_large_stack};
 
 /// A file of a bundle.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -103,9 +100,7 @@ impl Chosen {
     /// # Panics
     /// The machine has no memory for a thread.
     pub fn blueprint(&self) -> Result<Arc<Blueprint>, String> {
-        let chosen = self.clone();
-        let compiler = std::thread::Builder::new().stack_size(STACK).spawn(move || chosen.compiled());
-        compiler.expect("a thread can be started").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        on_a_large_stack(|| self.compiled())
     }
 
     fn compiled(&self) -> Result<Arc<Blueprint>, String> {

@@ -15,7 +15,10 @@ mod text;
 
 pub use bg_compiler::source::syntax::files::{Open, Opened};
 pub use blueprint::Blueprint;
-pub use bundle::{Bundle, Chosen, STACK};
+pub use bundle::{Bundle, Chosen};
 pub use code::BackEnd;
 pub use interpreted::Interpreted;
-pub use text::{Counted, Fault, Graph, Model, UsedFile, Wanted, load, load_file, load_wanted, syntax_faults};
+pub use text::{
+    Counted, Fault, Graph, Model, UsedFile, Wanted, load, load_file, load_wanted, macro_calls, on_a_large_stack,
+    syntax_faults,
+};

@@ -16,7 +16,7 @@ use bg_compiler::source::{part, syntax};
 use bg_compiler::tables;
 pub use bg_compiler::tables::Counted;
 use bg_model::description::Description;
-use proc_macro2::{TokenStream, TokenTree};
+use proc_macro2::{Group, TokenStream, TokenTree};
 
 use crate::blueprint::Blueprint;
 use crate::statics;
@@ -118,6 +118,20 @@ pub fn load_file(path: &Path, first: Opened, open: Open<'_>, wanted: Wanted<'_>)
     graphs(&gathered, wanted).map_err(|faults| placed(&gathered, faults))
 }
 
+/// The stack of the compiler, bytes: laws may be long.
+const STACK: usize = 1 << 28;
+
+/// What `compile` gives, in a thread whose stack is large enough for laws of any length.
+///
+/// # Panics
+/// As `compile`, or the machine has no memory for a thread.
+pub fn on_a_large_stack<T: Send>(compile: impl FnOnce() -> T + Send) -> T {
+    std::thread::scope(|scope| {
+        let compiler = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, compile);
+        compiler.expect("a thread can be started").join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+    })
+}
+
 /// The faults of syntax of a text, without the files that it uses.
 #[must_use]
 pub fn syntax_faults(text: &str) -> Vec<Fault> {
@@ -151,7 +165,9 @@ fn graphs(gathered: &Gathered, wanted: Wanted<'_>) -> Staged<Vec<Graph>> {
         return Err(gathered.faults.clone());
     }
     let tokens = gathered.tokens.clone();
-    let source = Source { most: wanted.most, ..syntax::parse(calls(&tokens).unwrap_or(tokens))? };
+    let calls = macro_calls(tokens.clone());
+    let inside = calls.iter().map(Group::stream).collect();
+    let source = Source { most: wanted.most, ..syntax::parse(if calls.is_empty() { tokens } else { inside })? };
     if let Some(path) = part::unasked(&source) {
         return Err(vec![part::of_rust(path)]);
     }
@@ -202,17 +218,18 @@ impl Model {
     }
 }
 
-/// What stands in the calls of the macro, of a text that is a Rust file; none of other texts.
-fn calls(tokens: &TokenStream) -> Option<TokenStream> {
-    let tokens: Vec<TokenTree> = tokens.clone().into_iter().collect();
+/// What stands in the brackets of each call of the macro outside of functions and modules; nothing of a text that is no
+/// Rust file.
+#[must_use]
+pub fn macro_calls(tokens: TokenStream) -> Vec<Group> {
+    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let call = |tokens: &[TokenTree]| match tokens {
         [TokenTree::Ident(name), TokenTree::Punct(mark), TokenTree::Group(group)]
             if name == "bond_graph" && mark.as_char() == '!' =>
         {
-            Some(group.stream())
+            Some(group.clone())
         }
         _ => None,
     };
-    let calls: Vec<TokenStream> = tokens.windows(3).filter_map(call).collect();
-    (!calls.is_empty()).then(|| calls.into_iter().collect())
+    tokens.windows(3).filter_map(call).collect()
 }

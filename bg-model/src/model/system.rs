@@ -99,8 +99,8 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         None
     }
 
-    /// The joints that close loops in closed form for links which might come to a pose where they turn either way: nothing
-    /// shows that the pivots of these loops keep away from zero. None by default.
+    /// The joints that close loops in closed form for links which might come to a pose where they turn either way:
+    /// nothing shows that the pivots of these loops keep away from zero. None by default.
     fn turning(&self) -> &'static [&'static str] {
         &[]
     }

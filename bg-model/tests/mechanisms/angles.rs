@@ -32,7 +32,8 @@ bond_graph! {
         observe { angle: rad = pin.angle; place: rad = ends.place; speed: rad/s = pin.speed }
         scene StoppedFlat { expect planar; angles; }
     }
-    /// The same wheel with a torsion spring, and a mass on a spring: storages at displacements that are counted already.
+    /// The same wheel with a torsion spring, and a mass on a spring: storages at displacements that are counted
+    /// already.
     graph Given {
         param stiffness: N*m/rad = 0.1, above 0; param k: N/m = 50;
         ground { point pivot = [0, 0, 0]; }
@@ -114,7 +115,8 @@ fn a_storage_may_be_at_an_angle_or_a_displacement_that_is_counted() {
     let travel = |t: f64| 0.1 * (5.0 * t).sin();
     assert!(off(&run, "angle", wound(0.0)) < 1e-6 && off(&run, "torque", |t| 0.1 * wound(0.0)(t)) < 1e-7);
     assert!(off(&run, "x", travel) < 1e-8 && off(&run, "force", |t| 50.0 * travel(t)) < 1e-6);
-    // At the start the spring has no force: a run that measures errors by sizes found none for the displacement, and stopped.
+    // At the start the spring has no force: a run that measures errors by sizes found none for the displacement, and
+    // stopped.
     for method in [Integrator::Auto, Integrator::Dop853, Integrator::Taylor, Integrator::Radau9, Integrator::Bs5] {
         let by_sizes = Simulation::new(&model).method(method).rtol(1e-8).every(0.05).until(6.0).run().expect("a run");
         assert!(off(&by_sizes, "x", travel) < 3e-7, "{method:?}: {:e}", off(&by_sizes, "x", travel));

@@ -122,14 +122,3 @@ fn along(axis: usize, length: f64) -> [f64; 3] {
     point[axis] = length;
     point
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_view_is_orthographic() {
-        let (x, y) = (seen([1.0, 0.0, 0.0]), seen([0.0, 1.0, 0.0]));
-        assert!(x.0 > 0.8 && y.1 > 0.9 && y.0 == 0.0);
-    }
-}

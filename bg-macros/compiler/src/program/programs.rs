@@ -39,7 +39,8 @@ pub struct Programs {
     pub required: [Option<Program<1>>; 2],
     /// What the laws give that can make numbers which are not finite, with its own constants.
     pub not_finite: Program<1>,
-    /// The pivots of loops that nothing shows to keep away from zero, with its own constants; none where there are none.
+    /// The pivots of loops that nothing shows to keep away from zero, with its own constants; none where there are
+    /// none.
     pub pivots: Option<Program<1>>,
     /// What pictures show.
     pub shown: Tape,
@@ -142,7 +143,7 @@ pub fn programs(
     let starting = starting(equations);
     let fallible = roots(&equations.fallible, |law| law.value);
     let not_finite = alone(&mut equations.pool, "not_finite", &fallible);
-    let pivots: Vec<Id> = equations.fallible.iter().filter(|law| law.may_vanish).map(|law| law.value).collect();
+    let pivots: Vec<Id> = equations.turning().map(|law| law.value).collect();
     let pivots = (!pivots.is_empty()).then(|| alone(&mut equations.pool, "pivots", &pivots));
     let required = [("required", false), ("required_at_start", true)]
         .map(|(name, is_of_start)| required(equations, name, is_of_start));

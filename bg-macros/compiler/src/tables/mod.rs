@@ -108,7 +108,7 @@ pub fn tables(model: &Compiled, counted: Counted) -> Tables {
         second: model.second_order.states.clone(),
         first_branches: equations.switches.iter().map(|switch| switch.remembers).collect(),
         fallible: equations.fallible.iter().map(|law| (law.kind, law.element.clone())).collect(),
-        turning: equations.fallible.iter().filter(|law| law.may_vanish).map(|law| law.element.clone()).collect(),
+        turning: equations.turning().map(|law| law.element.clone()).collect(),
         loops: loops(&equations.iterations),
         jacobian: model.jacobian.places(),
         unknowns: model.jacobian.unknowns.len(),

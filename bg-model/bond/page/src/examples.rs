@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use bg_gallery::example::Example;
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use bg_loaded::macro_calls;
+use proc_macro2::{Group, LexError};
 use serde::Serialize;
 
 /// An example.
@@ -91,18 +92,12 @@ fn of_example(example: &Example, text: String) -> Offered {
 fn text(path: &Path) -> Result<String, String> {
     let failed = |fault: &dyn std::fmt::Display| format!("{}: {fault}", path.display());
     let source = std::fs::read_to_string(path).map_err(|fault| failed(&fault))?;
-    let tokens: TokenStream = source.parse().map_err(|fault| failed(&fault))?;
-    let tokens: Vec<TokenTree> = tokens.into_iter().collect();
-    let inside = |tokens: &[TokenTree]| match tokens {
-        [TokenTree::Ident(name), TokenTree::Punct(mark), TokenTree::Group(group)]
-            if name == "bond_graph" && mark.as_char() == '!' && group.delimiter() == Delimiter::Brace =>
-        {
-            let [open, close] = [group.span_open().byte_range().end, group.span_close().byte_range().start];
-            Some(outdented(&source[open..close]))
-        }
-        _ => None,
+    let calls = macro_calls(source.parse().map_err(|fault: LexError| failed(&fault))?);
+    let inside = |call: &Group| {
+        let [open, close] = [call.span_open().byte_range().end, call.span_close().byte_range().start];
+        outdented(&source[open..close])
     };
-    let texts: Vec<String> = tokens.windows(3).filter_map(inside).collect();
+    let texts: Vec<String> = calls.iter().map(inside).collect();
     if texts.is_empty() { Err(failed(&"has no bond_graph! { .. }")) } else { Ok(texts.join("\n")) }
 }
 

@@ -35,7 +35,7 @@ pub fn watch(path: &Path, options: &[OsString], served: &Served) -> ExitCode {
     let shared = Arc::new(Shared::of(path));
     let address = match server::start(served.port, Arc::clone(&shared)) {
         Ok(address) => address,
-        Err(fault) => return refused(&format!("--port {}: {fault}", served.port)),
+        Err(fault) => return refused(&fault.to_string()),
     };
     if let Err(fault) = served.show(&address, &path.display().to_string()) {
         return refused(&fault);

@@ -6,13 +6,13 @@
 //! | `/state?after=N` | what there is to show, as JSON; after some seconds, or as soon as it is no longer the state `N` |
 //! | `/report` | the newest report |
 
-use std::net::Ipv4Addr;
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use bond_graph::serve::{ServeFault, answering, header};
 use serde::Serialize;
-use tiny_http::{Header, Request, Response, Server};
+use tiny_http::{Request, Response};
 
 /// The page around the report.
 const PAGE: &str = include_str!("page.html");
@@ -86,22 +86,12 @@ impl Shared {
     }
 }
 
-/// Starts to answer, on a port of this machine that others do not reach; 0 is a free one. Gives the address of the
-/// page.
+/// Starts to answer, by [`answering`]; gives the address of the page.
 ///
 /// # Errors
-/// The port cannot be had: a sentence.
-pub fn start(port: u16, shared: Arc<Shared>) -> Result<String, String> {
-    let server = Server::http((Ipv4Addr::LOCALHOST, port)).map_err(|fault| fault.to_string())?;
-    let address = format!("http://{}/", server.server_addr());
-    std::thread::spawn(move || {
-        // A question for the state waits, so each has a thread.
-        for request in server.incoming_requests() {
-            let shared = Arc::clone(&shared);
-            std::thread::spawn(move || answer(request, &shared));
-        }
-    });
-    Ok(address)
+/// The port cannot be had.
+pub fn start(port: u16, shared: Arc<Shared>) -> Result<String, ServeFault> {
+    answering(port, move |request| answer(request, &shared))
 }
 
 fn answer(request: Request, shared: &Shared) {
@@ -115,7 +105,6 @@ fn answer(request: Request, shared: &Shared) {
         "/report" => (shared.now().page.clone(), "text/html; charset=utf-8"),
         _ => return drop(request.respond(Response::empty(404))),
     };
-    let header = |name: &str, value: &str| Header::from_bytes(name, value).expect("ASCII");
     let response = Response::from_string(text).with_header(header("Content-Type", kind));
     // A browser that has gone away is no fault.
     let _ = request.respond(response.with_header(header("Cache-Control", "no-store")));

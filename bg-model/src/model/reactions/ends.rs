@@ -1,8 +1,8 @@
 //! Loops in closed form that come to their ends: poses in which links that follow may turn either way.
 //!
-//! In: the starts and ends of steps. Out: an end of the run in place of a wrong result. The pivot of such a loop is a root, whose
-//! side a run keeps. Where nothing shows that it keeps away from zero the motion may pass a pose in which it vanishes and
-//! should change its side; equations that keep it turn back there, or rest.
+//! In: the starts and ends of steps. Out: an end of the run in place of a wrong result. The pivot of such a loop is a
+//! root, whose side a run keeps. Where nothing shows that it keeps away from zero the motion may pass a pose in which
+//! it vanishes and should change its side; equations that keep it turn back there, or rest.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -50,8 +50,8 @@ impl EndMonitor {
         ended.map(|k| joints[k])
     }
 
-    /// The joint whose loop seems to come to its end in a step of `h` (s) from time `t` (s), or soon after it: the tangent of
-    /// its pivot leads through zero. That of one that only comes near does so no more in a shorter step.
+    /// The joint whose loop seems to come to its end in a step of `h` (s) from time `t` (s), or soon after it: the
+    /// tangent of its pivot leads through zero. That of one that only comes near does so no more in a shorter step.
     pub fn ahead(
         &mut self,
         system: &dyn Dynamics,

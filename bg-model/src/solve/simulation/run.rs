@@ -116,11 +116,7 @@ impl<'a> Run<'a> {
         self.monitor.begin_by_probe(&mut self.stepper, &clear, self.controller.reach());
         self.stepper.end.become_that(self.stepper.start.borrowed());
         self.check_start()?;
-        let Stepper { system, start, negative, .. } = &self.stepper;
-        let at = (start.t, start.x.as_slice());
-        if let Some(joint) = self.ends.as_mut().and_then(|ends| ends.reached(*system, at, negative)) {
-            return Err(Cause::LoopEnds { joint, t: start.t });
-        }
+        self.check_ends()?;
         let reach = self.controller.reach();
         let outcome = self.condition.as_mut().map_or(Ok(()), |condition| condition.begin(&mut self.stepper, reach));
         self.stepper.end.become_that(self.stepper.start.borrowed());
@@ -142,17 +138,22 @@ impl<'a> Run<'a> {
 
     /// Sees to it that the joints which close loops say where the mechanism goes at the end of the step.
     pub fn check_joints(&mut self) -> Result<(), Cause> {
+        self.check_ends()?;
         let Stepper { system, end, negative, .. } = &self.stepper;
-        let at = (end.t, end.x.as_slice());
-        if let Some(joint) = self.ends.as_mut().and_then(|ends| ends.reached(*system, at, negative)) {
-            return Err(Cause::LoopEnds { joint, t: end.t });
-        }
         let Some(loops) = &mut self.loops else { return Ok(()) };
-        match loops.check(*system, at, negative, self.sizes.moved(*system)) {
+        match loops.check(*system, (end.t, end.x.as_slice()), negative, self.sizes.moved(*system)) {
             Some(Broken::Torn(slipping)) => Err(Cause::Torn { slipping, t: end.t }),
             Some(Broken::Singular(redundancy)) => Err(Cause::Singular { redundancy, t: end.t }),
             None => Ok(()),
         }
+    }
+
+    /// Sees to it that no loop has come to its end at the end of the step.
+    fn check_ends(&mut self) -> Result<(), Cause> {
+        let Stepper { system, end, negative, .. } = &self.stepper;
+        let Some(ends) = &mut self.ends else { return Ok(()) };
+        let reached = ends.reached(*system, (end.t, end.x.as_slice()), negative);
+        reached.map_or(Ok(()), |joint| Err(Cause::LoopEnds { joint, t: end.t }))
     }
 
     /// Makes steps until the run ends; gives why it does.

@@ -65,8 +65,7 @@ impl<'a> Stepper<'a> {
 
     /// Tries a step of size `h` (s); gives its error norm.
     pub fn attempt(&mut self, h: f64) -> f64 {
-        self.h = h;
-        (self.dense_is_ready, self.samples_are_ready) = (false, false);
+        self.arrived(h);
         let (method, flow, start, end, scale) = self.split();
         end.t = start.t + h;
         let (start, end) = (start.borrowed(), end.x.as_mut_slice());

@@ -30,6 +30,24 @@ impl Emission<'_> {
         }
     }
 
+    /// The statements of a function that evaluates a program by itself at a state, with constants of its own, and its
+    /// results.
+    pub(super) fn by_itself(&self, program: &Program<1>) -> (TokenStream, Vec<TokenStream>) {
+        let [routine] = &program.routines;
+        let (decided, constants) = (self.decided().read(), self.own_constants(program));
+        let bindings = self.dynamic_bindings(routine);
+        let (statements, results) = self.body(routine);
+        let body = quote! {
+            let parameters = &self.values;
+            #decided
+            #constants
+            let [x] = &x.data.0;
+            #bindings
+            #statements
+        };
+        (body, results)
+    }
+
     /// The statements of a function of the running model, and its results.
     pub(super) fn function(&self, routine: &Routine) -> (TokenStream, Vec<TokenStream>) {
         self.running(routine, &format_ident!("constants"))

@@ -199,22 +199,14 @@ impl Emission<'_> {
     /// The loops that may come to their ends, and their pivots; nothing where there are none.
     fn pivots(&self) -> Option<TokenStream> {
         let Shape { n, g, .. } = &self.shape;
-        let program = self.model.programs.pivots.as_ref()?;
-        let [routine] = &program.routines;
-        let (joints, constants, decided) = (&self.tables.turning, self.own_constants(program), self.decided().read());
-        let bindings = self.dynamic_bindings(routine);
-        let (statements, values) = self.body(routine);
+        let (body, values) = self.by_itself(self.model.programs.pivots.as_ref()?);
+        let joints = &self.tables.turning;
         Some(quote! {
             fn turning(&self) -> &'static [&'static str] {
                 &[#(#joints),*]
             }
             fn pivots(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], pivots: &mut [S]) {
-                let parameters = &self.values;
-                #decided
-                #constants
-                let [x] = &x.data.0;
-                #bindings
-                #statements
+                #body
                 pivots.copy_from_slice(&[#(#values),*]);
             }
         })
@@ -223,8 +215,6 @@ impl Emission<'_> {
     /// Which input or law is the first whose value is not finite; nothing where none can be.
     fn not_finite(&self) -> Option<TokenStream> {
         let Shape { n, g, .. } = &self.shape;
-        let program = &self.model.programs.not_finite;
-        let [routine] = &program.routines;
         let (fallible, inputs) = (&self.tables.fallible, &self.model.equations.inputs);
         if fallible.is_empty() && inputs.is_empty() {
             return None;
@@ -233,22 +223,14 @@ impl Emission<'_> {
             let (field, name) = (identifier(&input.name.text), &input.name.text);
             quote!(("input", #name, self.inputs.#field.value(t)))
         });
-        let constants = self.own_constants(program);
-        let decided = self.decided().read();
-        let bindings = self.dynamic_bindings(routine);
-        let (statements, values) = self.body(routine);
+        let (body, values) = self.by_itself(&self.model.programs.not_finite);
         let laws = fallible.iter().zip(values).map(|((kind, element), value)| quote!((#kind, #element, #value)));
         Some(quote! {
             #[cold]
             fn not_finite(
                 &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g],
             ) -> Option<::bg_model::failure::Origin> {
-                let parameters = &self.values;
-                #decided
-                #constants
-                let [x] = &x.data.0;
-                #bindings
-                #statements
+                #body
                 ::bg_model::failure::Origin::first(&[#(#inputs,)* #(#laws,)*])
             }
         })

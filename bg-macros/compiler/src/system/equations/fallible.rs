@@ -5,6 +5,7 @@
 //! Method: a law can do so if it divides by, or takes a root, logarithm, exponential, non-integer power or the like of
 //! something that changes in a run. What depends on parameters only is the same in all of it.
 
+use super::StateEquations;
 use super::signals::Signals;
 use crate::expr::Id;
 use crate::graph::{BinaryOperator, Builtin, Element, ElementKind, Law, NodeId, Reference, Term, TermKind};
@@ -21,6 +22,20 @@ pub struct FallibleLaw {
     pub value: Id,
     /// Whether it is the pivot of a loop that nothing shows to keep away from zero.
     pub may_vanish: bool,
+}
+
+impl FallibleLaw {
+    /// What an element gives.
+    pub(super) fn new(kind: &'static str, element: String, value: Id) -> Self {
+        Self { kind, element, value, may_vanish: false }
+    }
+}
+
+impl StateEquations {
+    /// The pivots of loops that nothing shows to keep away from zero.
+    pub fn turning(&self) -> impl Iterator<Item = &FallibleLaw> {
+        self.fallible.iter().filter(|law| law.may_vanish)
+    }
 }
 
 /// What is known of an expression without its value.
@@ -48,8 +63,7 @@ impl Signals<'_> {
     pub(super) fn note_fallible(&mut self, node: NodeId, element: &Element, value: &Value) {
         if self.is_partial(element) {
             let (kind, name) = (element.kind.symbol(), &self.graph.node(node).name.text);
-            let laws =
-                value.0.iter().map(|&value| FallibleLaw { kind, element: name.clone(), value, may_vanish: false });
+            let laws = value.0.iter().map(|&value| FallibleLaw::new(kind, name.clone(), value));
             self.fallible.extend(laws);
         }
     }

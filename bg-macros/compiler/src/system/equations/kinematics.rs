@@ -70,15 +70,8 @@ impl Signals<'_> {
 
     /// The rates of angles that count turns and of displacements of junctions.
     fn add_ways(&mut self, seeds: &mut BTreeMap<Symbol, Id>) {
-        for (index, state) in self.turns.clone() {
-            let speed = self.evaluate(&self.graph.turns[index].speed, None);
-            let speed = self.without_loops(&speed);
-            seeds.insert(Symbol::state(state), speed.0[0]);
-        }
-        for (node, state) in self.ways.clone() {
-            let flow = self.junction_flow(node);
-            let flow = self.without_loops(&flow);
-            seeds.insert(Symbol::state(state), flow.0[0]);
+        for (state, rate) in self.rates_of_ways() {
+            seeds.insert(Symbol::state(state), self.without_loops(&rate).0[0]);
         }
     }
 

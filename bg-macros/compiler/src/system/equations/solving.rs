@@ -96,7 +96,7 @@ impl Signals<'_> {
     fn note_iterated(&mut self, group: &[u32], members: &[String]) {
         for &number in group {
             let (kind, value) = ("algebraic loop", self.pool.symbol(Symbol::Unsolved(number)));
-            self.fallible.insert(0, FallibleLaw { kind, element: members.join(", "), value, may_vanish: false });
+            self.fallible.insert(0, FallibleLaw::new(kind, members.join(", "), value));
         }
     }
 
@@ -151,8 +151,7 @@ impl Signals<'_> {
         } else {
             let definition = self.graph.node(node);
             let value = self.pool.powi(pivot, -1);
-            let (kind, element) = (definition.kind.symbol(), definition.name.text.clone());
-            let law = FallibleLaw { kind, element, value, may_vanish: false };
+            let law = FallibleLaw::new(definition.kind.symbol(), definition.name.text.clone(), value);
             self.fallible.insert(0, law);
         }
     }

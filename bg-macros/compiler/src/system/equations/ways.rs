@@ -12,6 +12,7 @@ use super::{EquationFault, Origin, State};
 use crate::expr::{Function, Id, Symbol};
 use crate::fault::Fault;
 use crate::graph::{NodeId, TermKind};
+use crate::system::Value;
 
 impl Signals<'_> {
     /// Gives the angles and displacements that something reads their states.
@@ -63,13 +64,19 @@ impl Signals<'_> {
         [0, 1].map(|k| self.evaluate(&parts[k], None).0[0])
     }
 
-    /// Their rates.
+    /// Their states, each with its rate.
+    pub(super) fn rates_of_ways(&mut self) -> Vec<(usize, Value)> {
+        let (graph, turns, ways) = (self.graph, self.turns.clone(), self.ways.clone());
+        let turns = turns.into_iter().map(|(index, state)| (state, self.evaluate(&graph.turns[index].speed, None)));
+        let mut rates: Vec<(usize, Value)> = turns.collect();
+        rates.extend(ways.into_iter().map(|(node, state)| (state, self.junction_flow(node))));
+        rates
+    }
+
+    /// Gives the states these rates.
     pub(super) fn way_rates(&mut self) {
-        for (index, state) in self.turns.clone() {
-            self.states[state].rate = self.evaluate(&self.graph.turns[index].speed, None).0[0];
-        }
-        for (node, state) in self.ways.clone() {
-            self.states[state].rate = self.junction_flow(node).0[0];
+        for (state, rate) in self.rates_of_ways() {
+            self.states[state].rate = rate.0[0];
         }
     }
 

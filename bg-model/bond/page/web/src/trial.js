@@ -62,7 +62,7 @@ async function found(page, motion, verdict) {
   verdict.old = document.querySelector("#report.old") !== null;
   retype(page.editor, "angle: radd = 0.5", "angle: rad = 0.75");
   await until("no fault", () => document.getElementById("faults").hidden && isThere());
-  verdict.mended = inFrame("#parameters td.number").textContent;
+  verdict.corrected = inFrame("#parameters td.number").textContent;
 
   // A slider of the report, which this page's worker runs the model for.
   const slider = inFrame("#controls input[type=range]");

@@ -62,7 +62,8 @@ fn folder(uri: &str) -> Option<PathBuf> {
     (path.starts_with('/') || with_drive.is_some()).then(|| path.into())
 }
 
-/// The instance of the model among those that are `found` that has this token, for an `fmi2Type`; null where there is none.
+/// The instance of the model among those that are `found` that has this token, for an `fmi2Type`; null where there is
+/// none.
 ///
 /// # Safety
 /// The texts end with 0, or are null; `callbacks` points to the host's functions, or is null.
@@ -115,10 +116,10 @@ mod tests {
     #[test]
     fn uris_of_folders_are_read() {
         let path = |path: &str| Some(PathBuf::from(path));
-        assert_eq!(folder("file:///tmp/a%20b/resources"), path("/tmp/a b/resources"));
-        assert_eq!(folder("file:/tmp/resources"), path("/tmp/resources"));
-        assert_eq!(folder("file://localhost/tmp"), path("/tmp"));
-        assert_eq!(folder("file:///C:/Temp/resources"), path("C:/Temp/resources"));
-        assert_eq!(["file://elsewhere/tmp", "http://a/b", "/tmp", "file:"].map(folder), [None, None, None, None]);
+        assert_eq!(folder("file:///units/a%20b/resources"), path("/units/a b/resources"));
+        assert_eq!(folder("file:/units/resources"), path("/units/resources"));
+        assert_eq!(folder("file://localhost/units"), path("/units"));
+        assert_eq!(folder("file:///C:/units/resources"), path("C:/units/resources"));
+        assert_eq!(["file://elsewhere/units", "http://a/b", "/units", "file:"].map(folder), [None, None, None, None]);
     }
 }

@@ -142,11 +142,11 @@ impl Tableau for DormandPrince {
         (11, -0.022355307863886294),
     ];
 
-    // On y' = z y / h the difference of `ERROR` is zero at z = -5.685, just inside of the limit of stability, and near it
-    // the whole estimate is up to 260 times too small. Such differences have three free parameters. This one's are those
-    // of the least sum of sizes, for the sake of rounding, with which the estimate is at least the error for z from -6.2
-    // to 0 and at least a thirtieth of that of the dense output; where steps follow the solution (z from -4.3 to 0, up to
-    // 5 i, elementary weights of orders 6 and 7) it is smaller than that of `ERROR`.
+    // On y' = z y / h the difference of `ERROR` is zero at z = -5.685, just inside of the limit of stability, and near
+    // it the whole estimate is up to 260 times too small. Such differences have three free parameters. This one's are
+    // those of the least sum of sizes, for the sake of rounding, with which the estimate is at least the error for z
+    // from -6.2 to 0 and at least a thirtieth of that of the dense output; where steps follow the solution (z from -4.3
+    // to 0, up to 5 i, elementary weights of orders 6 and 7) it is smaller than that of `ERROR`.
     const OTHER_ERROR: Row = &[
         (0, 0.04568895854027798),
         (5, -9.393346043726046),
@@ -160,8 +160,8 @@ impl Tableau for DormandPrince {
 
     const SECOND: Row = &[(0, 0.2440944881889764), (8, 0.7338466882816118), (11, 0.022058823529411766)];
 
-    // On y' = z y / h the dense output errs by 27 to 100 times as much as it is off from this stage, for z from -12 to 3
-    // and on the imaginary axis up to 5.
+    // On y' = z y / h the dense output errs by 27 to 100 times as much as it is off from this stage, for z from -12 to
+    // 3 and on the imaginary axis up to 5.
     const DENSE_ERROR: Option<(usize, f64)> = Some((14, 60.0));
 
     const DENSE: &'static [Row] = &[

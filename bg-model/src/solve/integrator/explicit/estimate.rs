@@ -49,7 +49,8 @@ impl Dynamics for Exponential {
     }
 }
 
-/// What DOP853 says that a step of 1 s of z' = `rate` z from 1 errs by, what it errs by at its end and, at most, inside.
+/// What DOP853 says that a step of 1 s of z' = `rate` z from 1 errs by, what it errs by at its end and, at most,
+/// inside.
 fn estimated_and_true(rate: [f64; 2]) -> [f64; 3] {
     let (system, mut statistics) = (Exponential { rate }, Statistics::default());
     let flow = Flow::new(&system, &[], &mut statistics);
@@ -94,8 +95,8 @@ fn combined<T: Tableau>(row: Row, rate: impl Fn(f64) -> f64, h: f64) -> f64 {
     row.iter().map(|(stage, weight)| weight * rate(T::C[*stage] * h)).sum()
 }
 
-/// Hairer, Norsett, Wanner, section II.10, equation (10.17), and `dop853.f`: h e5 e5 / sqrt(e5 e5 + 0.01 e3 e3), with the larger of two
-/// differences of order 5.
+/// Hairer, Norsett, Wanner, section II.10, equation (10.17), and `dop853.f`: h e5 e5 / sqrt(e5 e5 + 0.01 e3 e3), with
+/// the larger of two differences of order 5.
 #[test]
 fn the_third_order_estimate_of_dop853_has_the_weight_of_a_hundredth() {
     let h = 0.7;

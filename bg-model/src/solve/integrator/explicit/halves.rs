@@ -100,8 +100,8 @@ impl<T: Tableau> Halves<T> {
     }
 }
 
-/// What the dense output of a step of size `h` (s) errs by, in parts of what a step may; infinite where it is no number,
-/// zero where the method does not say.
+/// What the dense output of a step of size `h` (s) errs by, in parts of what a step may; infinite where it is no
+/// number, zero where the method does not say.
 fn error<T: Tableau>(
     (stages, polynomial): (&Stages<T, f64, SIDE_BY_SIDE>, &Polynomial<COEFFICIENTS>),
     arch: Arch,

@@ -106,7 +106,7 @@ pub struct Explicit<T> {
     pub(super) stages: Stages<T, f64, SIDE_BY_SIDE>,
     /// The dense output's coefficients.
     polynomial: Polynomial<COEFFICIENTS>,
-    /// The same of the two halves of a step.
+    /// The same of the two halves of a step; without room where no step is halved.
     halves: Halves<T>,
     /// What rounding has kept from the states.
     sum: CompensatedSum<f64, SIDE_BY_SIDE>,
@@ -218,7 +218,9 @@ impl<T: Tableau> Method for Explicit<T> {
     fn fit(&mut self, states: usize) {
         if self.stages.states() != states {
             (self.stages, self.sum) = (Stages::new(states), CompensatedSum::new(states));
-            self.halves = Halves::new(states);
+            if T::DENSE_ERROR.is_some() {
+                self.halves = Halves::new(states);
+            }
             self.polynomial.fit(states);
             self.projected.iter_mut().for_each(|projected| projected.resize(states, 0.0));
         }
