@@ -278,9 +278,11 @@ fn elements(graph: &BondGraph, parts: &[Part]) -> Vec<Element> {
 pub(crate) fn element_of(graph: &BondGraph, origin: Origin) -> &str {
     let node = match origin {
         Origin::Momentum(node, _) | Origin::Displacement(node, _) | Origin::Way(node) => node,
-        Origin::Position(track, _) | Origin::Orientation(track, ..) | Origin::Angle(track) | Origin::Hinge(track) | Origin::Speed(track) => {
-            graph.tracks[track].junction
-        }
+        Origin::Position(track, _)
+        | Origin::Orientation(track, ..)
+        | Origin::Angle(track)
+        | Origin::Hinge(track)
+        | Origin::Speed(track) => graph.tracks[track].junction,
         Origin::Turn(_) | Origin::Integral(_) => return "",
     };
     &graph.node(node).name.text

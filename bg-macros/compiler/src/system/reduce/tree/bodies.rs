@@ -2,8 +2,8 @@
 //!
 //! In: equations. Out: [`Body`] for each position and orientation that move as those of a body do: x' = p / m, and R' =
 //! w x R with w = R J R^T h, J constant. Method: the rates say which momenta these are and what the angular velocity w
-//! is; J is w where R is the unit matrix; the polynomial identity decides whether all this is so. That a position and an
-//! orientation belong together is a guess: joints prove it, or take no part.
+//! is; J is w where R is the unit matrix; the polynomial identity decides whether all this is so. That a position and
+//! an orientation belong together is a guess: joints prove it, or take no part.
 
 use std::collections::BTreeMap;
 
@@ -99,11 +99,7 @@ fn angular(equations: &mut StateEquations, axes: [usize; 9]) -> Option<([usize; 
         let symbol = pool.symbol(Symbol::state(axes[3 * by]));
         factor_of(pool, rates[3 * row], symbol)
     };
-    let spin = [
-        factor(pool, 1, 2).map(|minus| pool.neg(minus))?,
-        factor(pool, 0, 2)?,
-        factor(pool, 1, 0)?,
-    ];
+    let spin = [factor(pool, 1, 2).map(|minus| pool.neg(minus))?, factor(pool, 0, 2)?, factor(pool, 1, 0)?];
     let momenta = momentum::<3>(pool, states, spin[0]).ok()?;
     let turned = symbols(pool, &axes);
     let skew = Value(spin.to_vec()).skew(pool);

@@ -50,8 +50,10 @@ impl Probe {
             for column in 0..3 {
                 let product = pool.mul(vector[row], vector[column]);
                 let entry = if row == column {
-                    let all: Vec<(Id, f64)> =
-                        (1..4).map(|k| (squares[k], if k == row + 1 { 1.0 } else { -1.0 })).chain([(squares[0], 1.0)]).collect();
+                    let all: Vec<(Id, f64)> = (1..4)
+                        .map(|k| (squares[k], if k == row + 1 { 1.0 } else { -1.0 }))
+                        .chain([(squares[0], 1.0)])
+                        .collect();
                     pool.linear(0.0, &all)
                 } else {
                     let third = 3 - row - column;
@@ -69,7 +71,13 @@ impl Probe {
 impl Hinge {
     /// Each state and velocity of the child by those of the parent and the hinge; with `turned` the parent's axes are
     /// these.
-    pub fn motion(&self, pool: &mut Pool, bodies: &[Body], probe: &Probe, turned: Option<&Value>) -> BTreeMap<Symbol, Id> {
+    pub fn motion(
+        &self,
+        pool: &mut Pool,
+        bodies: &[Body],
+        probe: &Probe,
+        turned: Option<&Value>,
+    ) -> BTreeMap<Symbol, Id> {
         let mut images = BTreeMap::new();
         let [c, s, u] = [probe.cosine, probe.sine, probe.rate].map(|symbol| pool.symbol(symbol));
         let own = |pool: &mut Pool, body: usize, first: usize| {
@@ -156,7 +164,9 @@ fn hinge(equations: &mut StateEquations, bodies: &[Body], given: &Given<'_>, row
     }
     let flows: Vec<Id> = rows.iter().map(|&row| equations.reactions[row].slip.flow).collect();
     let flows = by_velocities(&mut equations.pool, bodies, &flows);
+    let flows = numbers::folded(&mut equations.pool, &flows);
     let gaps: Vec<Id> = rows.iter().filter_map(|&row| equations.reactions[row].slip.gap).collect();
+    let gaps = numbers::folded(&mut equations.pool, &gaps);
     let both: Vec<Id> = flows.iter().chain(&gaps).copied().collect();
     let mut ends = BTreeSet::new();
     for symbol in equations.pool.symbols(&both) {
@@ -192,17 +202,15 @@ fn hinge(equations: &mut StateEquations, bodies: &[Body], given: &Given<'_>, row
     };
     let [on_parent, on_child] = [own(parent), own(Some(child))].map(|axis| numbers::cleaned(&axis));
     let upright = numbers::upright(&on_child);
-    let frames = if numbers::are_near(&on_parent, &on_child) {
-        [upright; 2]
-    } else {
-        [numbers::upright(&on_parent), upright]
-    };
+    let frames =
+        if numbers::are_near(&on_parent, &on_child) { [upright; 2] } else { [numbers::upright(&on_parent), upright] };
     // The points, where the gap says x_b + R_b s_b - x_a - R_a s_a.
     let mut at: Vec<Value> = Vec::new();
     for body in [parent, Some(child)] {
         let Some(body) = body else {
             let zero = pool.zero();
-            let states: Vec<Symbol> = bodies[child].place.iter().chain(&bodies[child].axes).map(|&s| Symbol::state(s)).collect();
+            let states: Vec<Symbol> =
+                bodies[child].place.iter().chain(&bodies[child].axes).map(|&s| Symbol::state(s)).collect();
             let mut place = Vec::new();
             for (k, row) in [x, y, z].into_iter().enumerate() {
                 let by = partial(pool, &[gaps[row]], states[k])[0];
@@ -270,7 +278,11 @@ fn holds(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, (flows,
     let moved = |row: &usize| (0..3).any(|k| number(matrix[k][*row]) != Some(0.0));
     let (translations, rotations): (Vec<usize>, Vec<usize>) = (0..5).partition(moved);
     let block = |rows: &[usize], first: usize| -> Option<Vec<Vector>> {
-        rows.iter().map(|&row| Some([number(matrix[first][row])?, number(matrix[first + 1][row])?, number(matrix[first + 2][row])?])).collect()
+        rows.iter()
+            .map(|&row| {
+                Some([number(matrix[first][row])?, number(matrix[first + 1][row])?, number(matrix[first + 2][row])?])
+            })
+            .collect()
     };
     let (Some(along), Some(about)) = (block(&translations, 0), block(&rotations, 3)) else { return false };
     let ([a, b, c], [d, e]) = (&along[..], &about[..]) else { return false };
@@ -290,6 +302,7 @@ fn starts_so(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge) -> 
     });
     let axes = [0, 1].map(|end| numbers::constant(pool, &numbers::column(&hinge.frames[end], 2)));
     let (a, b) = (parent.multiply(pool, &axes[0]), child.multiply(pool, &axes[1]));
+    let [a, b] = [a, b].map(|of| Value(numbers::folded(pool, &of.0)));
     let is_near = a.0.iter().zip(&b.0).all(|(&a, &b)| {
         let apart = pool.sub(a, b);
         pool.as_number(apart).map_or_else(|| same_polynomial(pool, a, b), |apart| apart.abs() < 1e-12)
@@ -309,13 +322,19 @@ fn fits_at_start(equations: &mut StateEquations, bodies: &[Body], row: usize) ->
         }
     }
     let flow = substitute(pool, &[reactions[row].slip.flow], &|symbol| images.get(&symbol).copied());
-    let start = substitute(pool, &flow, &|symbol| symbol.as_state().map(|state| states[state].start))[0];
+    let start = substitute(pool, &flow, &|symbol| symbol.as_state().map(|state| states[state].start));
+    let start = numbers::folded(pool, &start)[0];
     let zero = pool.zero();
     pool.as_number(start).map_or_else(|| same_polynomial(pool, start, zero), |start| start.abs() < 1e-12)
 }
 
 /// Whether each reaction acts linearly on bodies' momenta alone and works on nothing but the flow of its row.
-fn works_not(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, (flows, loaded): (&[Id], &Loaded)) -> bool {
+fn works_not(
+    equations: &mut StateEquations,
+    bodies: &[Body],
+    hinge: &Hinge,
+    (flows, loaded): (&[Id], &Loaded),
+) -> bool {
     let momenta: BTreeMap<usize, Symbol> = bodies
         .iter()
         .enumerate()
@@ -330,6 +349,7 @@ fn works_not(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, (fl
         let mut powers = Vec::new();
         for &state in loaded.get(&multiplier).into_iter().flatten() {
             let load = partial(pool, &[states[state].rate], multiplier)[0];
+            let load = numbers::folded(pool, &[load])[0];
             let Some(&speed) = momenta.get(&state) else { return false };
             let speed = pool.symbol(speed);
             if pool.symbols(&[load]).contains(&multiplier) {

@@ -1,9 +1,9 @@
 //! The tree of links: where each hinge is and what each link's inertia is, in axes in which its own hinge is the third.
 //!
-//! In: bodies, hinges. Out: [`Link`]s, parents first. All of this is constant. The origin of a link is on its hinge, where
-//! the offset from the parent has a component less. What turns about a hinge as it does about any line through it, mass
-//! on the hinge and equal moments across it, is counted to the parent: nothing changes by it, and the recursion has
-//! zeros there (Khalil and Dombre, Modeling, Identification and Control of Robots, 2002, section 9.4).
+//! In: bodies, hinges. Out: [`Link`]s, parents first. All of this is constant. The origin of a link is on its hinge,
+//! where the offset from the parent has a component less. What turns about a hinge as it does about any line through
+//! it, mass on the hinge and equal moments across it, is counted to the parent: nothing changes by it, and the
+//! recursion has zeros there (Khalil and Dombre, Modeling, Identification and Control of Robots, 2002, section 9.4).
 
 use super::bodies::Body;
 use super::joints::Hinge;

@@ -1,11 +1,11 @@
 //! Bodies on hinges in joint coordinates.
 //!
-//! In: equations with bodies of eighteen states each and rigid joints. Out: the same with an angle and a speed for each
-//! hinge of a tree that stands on the ground; poses and momenta of its bodies are expressions of these. Method: with the
-//! motion of a hinge in place of that of a body the gaps and flows of its joint are zero identically (`joints`), so no
-//! motion is lost; its reactions work on none of these motions, so they occur in none of the rates. These are found from
-//! tip to ground and back (`recursion`). What other joints, dry friction and stops do stays in the loads of the bodies,
-//! linear in their multipliers.
+//! In: equations with bodies of eighteen states each and rigid joints, all of them hinges of trees that stand on the
+//! ground. Out: the same with an angle and a speed for each hinge; poses and momenta of bodies are expressions of
+//! these. Method: with the motion of a hinge in place of that of a body the gaps and flows of its joint are zero
+//! identically (`joints`), so no motion is lost; its reactions work on none of these motions, so they occur in none of
+//! the rates. These are found from tip to ground and back (`recursion`). Where anything else is held, as by a joint
+//! that closes a loop, a stop or dry friction, the equations stay as they are.
 
 mod bodies;
 mod joints;
@@ -45,12 +45,15 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
         return None;
     }
     let rows: BTreeSet<usize> = hinges.iter().flat_map(|hinge| hinge.rows.iter().copied()).collect();
+    // Rows that close loops, stops and dry friction are not told their mobilities yet.
+    if rows.len() != equations.reactions.len() {
+        return None;
+    }
     let gone: BTreeSet<Symbol> = rows.iter().map(|&row| equations.reactions[row].multiplier).collect();
     let of_bodies: BTreeSet<usize> = hinges.iter().flat_map(|hinge| states_of(&bodies[hinge.child])).collect();
     if is_read(equations, &gone, &of_bodies) {
         return None;
     }
-    keep_mobilities(equations, &bodies, &rows)?;
     let zero = equations.pool.zero();
     let unknown = equations.pool.number(f64::NAN);
     // The momenta's rates without the tree's reactions, which work on no motion of it.
@@ -60,13 +63,13 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     for (&state, rate) in momenta.iter().zip(rates) {
         equations.states[state].rate = rate;
     }
-    let mut row = 0;
-    equations.reactions.retain(|_| {
-        row += 1;
-        !rows.contains(&(row - 1))
-    });
+    equations.reactions.clear();
     // Pictures show no reaction of the tree.
-    equations.shown.replace(&mut equations.pool, &|symbol| gone.contains(&symbol).then_some(unknown), &crate::expr::Branch::Kept);
+    equations.shown.replace(
+        &mut equations.pool,
+        &|symbol| gone.contains(&symbol).then_some(unknown),
+        &crate::expr::Branch::Kept,
+    );
     let coordinates = motion::coordinates(&mut equations.pool, 6 * bodies.len() + 16, hinges.len());
     motion::recognise(equations, &bodies, &hinges, &coordinates);
     let links = links::of(&mut equations.pool, &bodies, &hinges);
@@ -193,45 +196,6 @@ fn is_read(equations: &StateEquations, gone: &BTreeSet<Symbol>, bodies: &BTreeSe
     let laws = equations.fallible.iter().map(|law| law.value);
     let all = rates.chain(outputs).chain(guards).chain(powers).chain(efforts).chain(slips).chain(loops).chain(laws);
     equations.pool.symbols(&all.collect::<Vec<_>>()).iter().any(|symbol| gone.contains(symbol))
-}
-
-/// Gives the rows that stay their mobilities, by all momenta; none where one acts on something else.
-fn keep_mobilities(equations: &mut StateEquations, bodies: &[Body], gone: &BTreeSet<usize>) -> Option<()> {
-    let StateEquations { pool, states, reactions, .. } = equations;
-    let momenta: Vec<usize> = (0..states.len()).filter(|&state| states[state].origin.kind() == Kind::Momentum).collect();
-    let rates: Vec<Id> = momenta.iter().map(|&state| states[state].rate).collect();
-    for (row, reaction) in reactions.iter_mut().enumerate() {
-        if gone.contains(&row) {
-            continue;
-        }
-        let slip = &mut reaction.slip;
-        let by = partial(pool, &rates, reaction.multiplier);
-        let mut parts = Vec::new();
-        for (&state, &by) in momenta.iter().zip(&by) {
-            if pool.is_zero(by) {
-                continue;
-            }
-            let direct = partial(pool, &[slip.flow], Symbol::state(state))[0];
-            let mut slopes = vec![direct];
-            for (index, body) in bodies.iter().enumerate() {
-                let Some(place) = body.angular.iter().position(|&own| own == state) else { continue };
-                // w changes by R J R^T e.
-                let axes = bodies::symbols(pool, &body.axes);
-                let unit: Vec<Id> = (0..3).map(|k| if k == place { pool.one() } else { pool.zero() }).collect();
-                let inside = axes.transpose().multiply(pool, &Value(unit));
-                let inside = body.mobility.multiply(pool, &inside);
-                let turned = axes.multiply(pool, &inside);
-                for k in 0..3 {
-                    let slope = partial(pool, &[slip.flow], velocity(index, 3 + k))[0];
-                    slopes.push(pool.mul(slope, turned.0[k]));
-                }
-            }
-            let slope = pool.sum(&slopes);
-            parts.push(pool.mul(slope, by));
-        }
-        slip.mobility = Some(pool.sum(&parts));
-    }
-    Some(())
 }
 
 /// What moves each link, and the acceleration of the ground that stands for the weights of all.

@@ -194,13 +194,13 @@ pub(super) fn energies(equations: &mut StateEquations, bodies: &[Body], links: &
         let own = axes.transpose().multiply(pool, &angular);
         let mobile = body.mobility.multiply(pool, &own);
         let by_angular = own.dot(pool, &mobile);
-        for (states, old, new) in
-            [(&body.linear[..], by_momentum, fast), (&body.angular[..], by_angular, turning)]
-        {
+        for (states, old, new) in [(&body.linear[..], by_momentum, fast), (&body.angular[..], by_angular, turning)] {
             let [old, new] = [old, new].map(|id| pool.scale(0.5, id));
             for energy in &mut equations.energies {
                 let reads = pool.symbols(&[*energy]);
-                if states.iter().any(|&state| reads.contains(&Symbol::state(state))) && same_polynomial(pool, *energy, old) {
+                if states.iter().any(|&state| reads.contains(&Symbol::state(state)))
+                    && same_polynomial(pool, *energy, old)
+                {
                     *energy = new;
                 }
             }

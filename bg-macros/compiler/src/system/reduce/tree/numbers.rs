@@ -1,6 +1,8 @@
 //! Vectors and matrices of numbers: constant axes of hinges.
 
-use crate::expr::Pool;
+use std::collections::BTreeMap;
+
+use crate::expr::{Environment, Id, Node, Pool, evaluate, exchange};
 use crate::system::Value;
 
 pub(super) type Vector = [f64; 3];
@@ -72,4 +74,15 @@ pub(super) fn constant(pool: &mut Pool, of: &Vector) -> Value {
 
 pub(super) fn matrix(pool: &mut Pool, of: &Matrix) -> Value {
     Value(of.iter().map(|&part| pool.number(part)).collect())
+}
+
+/// Nodes with functions of numbers, as `cos(0.3)`, as numbers.
+pub(super) fn folded(pool: &mut Pool, ids: &[Id]) -> Vec<Id> {
+    let calls = pool.reachable(ids).into_iter().filter(|&id| {
+        matches!(pool.node(id), Node::Call(..)) && pool.symbols(&[id]).is_empty() && !pool.has_select(&[id])
+    });
+    let calls: Vec<Id> = calls.collect();
+    let values = evaluate(pool, &calls, &Environment::default());
+    let places: BTreeMap<Id, Id> = calls.into_iter().zip(values).map(|(id, value)| (id, pool.number(value))).collect();
+    exchange(pool, ids, &places)
 }

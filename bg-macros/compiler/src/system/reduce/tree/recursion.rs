@@ -1,9 +1,9 @@
 //! The accelerations of a tree of hinges.
 //!
 //! In: links with sines and cosines, speeds, loads on each. Out: the rate of each speed. Method: articulated bodies
-//! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7), in the axes of each link. Accelerations are those of
-//! the links' origins, so that no velocity of a point is needed; what turning does is linear in the six products of an
-//! angular velocity's components. Gravity is an acceleration of the ground.
+//! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7), in the axes of each link. Accelerations are those
+//! of the links' origins, so that no velocity of a point is needed; what turning does is linear in the six products of
+//! an angular velocity's components. Gravity is an acceleration of the ground.
 
 use super::links::Link;
 use crate::expr::{Id, Pool};
@@ -192,7 +192,11 @@ fn release(pool: &mut Pool, body: &Articulated, own: &Moved, spin: &Value) -> (H
     let own_turning = Value(vec![x, pool.neg(y), zero]);
     let mut bias = [column, row].map(|of| of.scaled(pool, rate));
     for (k, bias) in bias.iter_mut().enumerate() {
-        let turned = if k == 0 { left[0].multiply(pool, &own_turning) } else { left[1].transpose().multiply(pool, &own_turning) };
+        let turned = if k == 0 {
+            left[0].multiply(pool, &own_turning)
+        } else {
+            left[1].transpose().multiply(pool, &own_turning)
+        };
         *bias = bias.add(pool, &body.bias[k]).add(pool, &turned);
     }
     bias[0].0[2] = own.torque;
