@@ -18,9 +18,9 @@ use std::collections::BTreeSet;
 
 use super::report::{Fate, Report};
 use super::{friction, is_constant};
-use crate::expr::{Environment, Function, Id, Pool, Symbol, evaluate, exchange, partial, substitute};
+use crate::expr::{Environment, Function, Id, Pool, Symbol, evaluate, exchange, substitute};
 use crate::system::Value;
-use crate::system::equations::{Kind, Origin, State, StateEquations};
+use crate::system::equations::{Origin, State, StateEquations};
 use bodies::{Body, velocity};
 use joints::Hinge;
 use links::Link;
