@@ -278,9 +278,11 @@ fn elements(graph: &BondGraph, parts: &[Part]) -> Vec<Element> {
 pub(crate) fn element_of(graph: &BondGraph, origin: Origin) -> &str {
     let node = match origin {
         Origin::Momentum(node, _) | Origin::Displacement(node, _) | Origin::Way(node) => node,
-        Origin::Position(track, _) | Origin::Orientation(track, ..) | Origin::Angle(track) => {
-            graph.tracks[track].junction
-        }
+        Origin::Position(track, _)
+        | Origin::Orientation(track, ..)
+        | Origin::Angle(track)
+        | Origin::Hinge(track)
+        | Origin::Speed(track) => graph.tracks[track].junction,
         Origin::Turn(_) | Origin::Integral(_) => return "",
     };
     &graph.node(node).name.text
@@ -293,7 +295,8 @@ const fn state_kind(origin: Origin) -> StateKind {
         Origin::Position(_, axis) => StateKind::Position(axis),
         Origin::Orientation(_, row, column) => StateKind::Orientation(row, column),
         Origin::Angle(_) => StateKind::Angle,
-        Origin::Turn(_) | Origin::Way(_) => StateKind::Way,
+        Origin::Speed(_) => StateKind::Momentum(0),
+        Origin::Turn(_) | Origin::Hinge(_) | Origin::Way(_) => StateKind::Way,
         Origin::Integral(_) => StateKind::Integral,
     }
 }

@@ -35,5 +35,5 @@ pub use pool::{Pool, children};
 pub(crate) use product::MOST_EXPONENT;
 pub use sign::{Signs, signs};
 pub use size::{Sized, sized};
-pub use substitute::{Branch, substitute, substitute_switched};
+pub use substitute::{Branch, exchange, substitute, substitute_switched};
 pub use text::text;

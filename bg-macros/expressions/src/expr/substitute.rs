@@ -3,6 +3,8 @@
 //! In: nodes, and an expression for each symbol to be replaced. Out: the same nodes over the new symbols, in canonical
 //! form.
 
+use std::collections::BTreeMap;
+
 use rustc_hash::FxHashMap;
 
 use super::{Id, Node, Pool, Symbol, children};
@@ -41,6 +43,16 @@ pub fn substitute_switched(
             },
             _ => pool.rebuilt(id, &images),
         };
+        images.insert(id, image);
+    }
+    roots.iter().map(|root| images[root]).collect()
+}
+
+/// The roots with nodes in the places of others. What takes a place is not searched again.
+pub fn exchange(pool: &mut Pool, roots: &[Id], places: &BTreeMap<Id, Id>) -> Vec<Id> {
+    let mut images: FxHashMap<Id, Id> = FxHashMap::default();
+    for id in pool.reachable(roots) {
+        let image = places.get(&id).copied().unwrap_or_else(|| pool.rebuilt(id, &images));
         images.insert(id, image);
     }
     roots.iter().map(|root| images[root]).collect()

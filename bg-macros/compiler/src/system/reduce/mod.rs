@@ -19,10 +19,11 @@ mod projected;
 mod reaction;
 mod report;
 mod speeds;
+mod tree;
 mod turned;
 
-use crate::expr::{Branch, Id, Pool, Symbol};
-use crate::system::equations::StateEquations;
+use crate::expr::{Branch, Id, Node, Pool, Symbol};
+use crate::system::equations::{Origin, StateEquations};
 
 pub use reaction::solve as solve_reactions;
 pub use report::{Count, Fate, Kept, Report};
@@ -117,14 +118,68 @@ pub fn for_scene(
 ) -> (StateEquations, Report) {
     let mut report = Report::new(&equations);
     report.count("literal", equations.states.len(), operations(&mut equations));
-    for pass in &PASSES {
-        if !(pass.applies)(&equations, wanted) {
-            continue;
+    let (parameters, others) = PASSES.split_at(1);
+    run(parameters, &mut equations, wanted, &mut report, operations);
+    let by_tree = in_joint_coordinates(&equations, wanted, &report, operations);
+    let (folding, joints) = others.split_at(3);
+    run(folding, &mut equations, wanted, &mut report, operations);
+    if let Some((changed, told)) = by_tree {
+        let hinges = changed.states.iter().filter(|state| matches!(state.origin, Origin::Hinge(_))).count();
+        // The matrix of all reactions takes seconds and more to factor for bodies that keep all their states.
+        let is_long = hinges > SHORT && equations.states.len() >= KEPT * hinges;
+        if is_long {
+            return (changed, told);
         }
-        (pass.run)(&mut equations, wanted, &mut report, operations);
-        report.count(pass.name, equations.states.len(), operations(&mut equations));
+        run(joints, &mut equations, wanted, &mut report, operations);
+        return if cost(&changed, &told) < cost(&equations, &report) { (changed, told) } else { (equations, report) };
     }
+    run(joints, &mut equations, wanted, &mut report, operations);
     (equations, report)
+}
+
+/// More hinges are not compared with the matrix of all reactions, where bodies keep at least so many states each.
+const SHORT: usize = 4;
+const KEPT: usize = 14;
+
+fn run(
+    passes: &[Pass],
+    equations: &mut StateEquations,
+    wanted: &Wanted,
+    report: &mut Report,
+    operations: &mut Operations<'_>,
+) {
+    for pass in passes {
+        if (pass.applies)(equations, wanted) {
+            (pass.run)(equations, wanted, report, operations);
+            report.count(pass.name, equations.states.len(), operations(equations));
+        }
+    }
+}
+
+/// The reduced equations with bodies on hinges by the hinges' angles, where there are such.
+fn in_joint_coordinates(
+    equations: &StateEquations,
+    wanted: &Wanted,
+    report: &Report,
+    operations: &mut Operations<'_>,
+) -> Option<(StateEquations, Report)> {
+    if !wanted.speeds || !wanted.links.is_empty() || !tree::may_apply(equations) {
+        return None;
+    }
+    let (mut changed, mut told) = (equations.clone(), report.clone());
+    tree::put(&mut changed, &mut told)?;
+    told.count("hinges by their angles", changed.states.len(), operations(&mut changed));
+    run(&PASSES[1..], &mut changed, wanted, &mut told, operations);
+    Some((changed, told))
+}
+
+/// The operations of a rate, a sine or cosine as many as it takes.
+fn cost(equations: &StateEquations, report: &Report) -> usize {
+    const CALL: usize = 15;
+    let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
+    let is_call = |id: &Id| matches!(equations.pool.node(*id), Node::Call(..));
+    let calls = equations.pool.reachable(&rates).iter().filter(|id| is_call(id)).count();
+    report.counts.last().map_or(0, |count| count.operations) + CALL * calls
 }
 
 /// Counts the turns of angles in a literal model, which has no proofs.

@@ -1,0 +1,265 @@
+//! The accelerations of a tree of hinges.
+//!
+//! In: links with sines and cosines, speeds, loads on each. Out: the rate of each speed. Method: articulated bodies
+//! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7), in the axes of each link. Accelerations are those
+//! of the links' origins, so that no velocity of a point is needed; what turning does is linear in the six products of
+//! an angular velocity's components. Gravity is an acceleration of the ground.
+
+use super::links::Link;
+use crate::expr::{Id, Pool};
+use crate::system::Value;
+
+/// What moves a link.
+#[derive(Clone, Debug)]
+pub(super) struct Moved {
+    pub cosine: Id,
+    pub sine: Id,
+    pub speed: Id,
+    /// The torque about its hinge.
+    pub torque: Id,
+    /// Moment about its origin and force, in its axes.
+    pub load: [Value; 2],
+}
+
+/// A moment is J a + H b + n, a force H^T a + M b + f, by the angular acceleration a and the acceleration b.
+#[derive(Clone, Debug)]
+struct Articulated {
+    /// J, H, M.
+    inertia: [Value; 3],
+    /// n, f.
+    bias: [Value; 2],
+}
+
+/// What is known of a link on the way back.
+#[derive(Clone, Debug)]
+struct Hinged {
+    /// By how much the speed's rate falls with the parent's accelerations.
+    by: [Value; 2],
+    rate: Id,
+    /// Its angular acceleration beside its parent's and its speed's rate.
+    turning: Value,
+}
+
+/// The angular velocity of each link, in its axes.
+pub(super) fn spins(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Vec<Value> {
+    let mut spins: Vec<Value> = Vec::new();
+    for (link, own) in links.iter().zip(moved) {
+        let mut spin = match link.parent {
+            Some(parent) => down(pool, link, own, &spins[parent]),
+            None => Value::zero(pool, 3),
+        };
+        spin.0[2] = pool.add(spin.0[2], own.speed);
+        spins.push(spin);
+    }
+    spins
+}
+
+/// The rates of the speeds, where the ground has this acceleration.
+pub(super) fn rates(pool: &mut Pool, links: &[Link], moved: &[Moved], ground: &Value) -> Vec<Id> {
+    let spins = spins(pool, links, moved);
+    let squares: Vec<Value> = spins.iter().map(|spin| square(pool, spin)).collect();
+    let mut bodies: Vec<Articulated> = Vec::new();
+    for (k, link) in links.iter().enumerate() {
+        bodies.push(rigid(pool, link, &moved[k], &squares[k]));
+    }
+    // How each link's origin is accelerated by the turning of its parent.
+    let pulls: Vec<Value> = links
+        .iter()
+        .map(|link| match link.parent {
+            Some(parent) => squares[parent].multiply(pool, &link.offset),
+            None => Value::zero(pool, 3),
+        })
+        .collect();
+    let mut hinged: Vec<Option<Hinged>> = vec![None; links.len()];
+    for k in (0..links.len()).rev() {
+        let (link, own) = (&links[k], &moved[k]);
+        let (known, left) = release(pool, &bodies[k], own, &spins[k]);
+        hinged[k] = Some(known);
+        if let Some(parent) = link.parent {
+            let carried = carried(pool, link, own, left, &pulls[k]);
+            let both = bodies[parent].clone();
+            bodies[parent] = both.add(pool, &carried);
+        }
+    }
+    let mut accelerations: Vec<[Value; 2]> = Vec::new();
+    let mut rates = Vec::new();
+    for (k, link) in links.iter().enumerate() {
+        let known = hinged[k].clone().expect("every link is gone through");
+        let still = [Value::zero(pool, 3), ground.clone()];
+        let [turning, there] = link.parent.map_or(still, |parent| accelerations[parent].clone());
+        let beside = turning.cross(pool, &link.offset);
+        let there = there.add(pool, &beside).add(pool, &pulls[k]);
+        let mut turning = down(pool, link, &moved[k], &turning).add(pool, &known.turning);
+        let there = down(pool, link, &moved[k], &there);
+        let parts = [known.by[0].dot(pool, &turning), known.by[1].dot(pool, &there)];
+        let rate = pool.linear(0.0, &[(known.rate, 1.0), (parts[0], -1.0), (parts[1], -1.0)]);
+        turning.0[2] = pool.add(turning.0[2], rate);
+        rates.push(rate);
+        accelerations.push([turning, there]);
+    }
+    rates
+}
+
+impl Articulated {
+    fn add(&self, pool: &mut Pool, other: &Self) -> Self {
+        let inertia = std::array::from_fn(|k| self.inertia[k].add(pool, &other.inertia[k]));
+        let bias = std::array::from_fn(|k| self.bias[k].add(pool, &other.bias[k]));
+        Self { inertia, bias }
+    }
+}
+
+/// A link that carries nothing.
+fn rigid(pool: &mut Pool, link: &Link, own: &Moved, square: &Value) -> Articulated {
+    let (mass, first, about) = &link.counted;
+    let across = first.skew(pool);
+    let heavy = Value::diagonal(pool, &[*mass; 3]);
+    let turned = gyroscopic(pool, about, square);
+    let pulled = square.multiply(pool, first);
+    let loads = own.load.clone().map(|load| load.negate(pool));
+    let bias = [turned.add(pool, &loads[0]), pulled.add(pool, &loads[1])];
+    Articulated { inertia: [about.clone(), across, heavy], bias }
+}
+
+/// w x (w x ) as a matrix, w w^T - w^2.
+fn square(pool: &mut Pool, spin: &Value) -> Value {
+    let w = &spin.0;
+    let squares: Vec<Id> = w.iter().map(|&part| pool.powi(part, 2)).collect();
+    Value(
+        (0..9)
+            .map(|k| {
+                let (row, column) = (k / 3, k % 3);
+                if row == column {
+                    let others = [squares[(row + 1) % 3], squares[(row + 2) % 3]];
+                    let sum = pool.sum(&others);
+                    pool.neg(sum)
+                } else {
+                    pool.mul(w[row], w[column])
+                }
+            })
+            .collect(),
+    )
+}
+
+/// w x I w by the products of w's components: y I_z - z I_y of the vectors I w w^T.
+fn gyroscopic(pool: &mut Pool, about: &Value, square: &Value) -> Value {
+    let at = |row: usize, column: usize| about.0[3 * (row % 3) + column % 3];
+    let product = |row: usize, column: usize| square.0[3 * (row % 3) + column % 3];
+    Value(
+        (0..3)
+            .map(|i| {
+                let (j, k) = (i + 1, i + 2);
+                let apart = pool.sub(at(k, k), at(j, j));
+                // The diagonal of w w^T - w^2 differs as the squares do.
+                let squares = pool.sub(product(j, j), product(k, k));
+                let parts = [(apart, product(j, k)), (at(j, k), squares), (at(i, k), product(i, j))];
+                let mut terms: Vec<(Id, f64)> = parts.iter().map(|&(a, b)| (pool.mul(a, b), 1.0)).collect();
+                terms.push((pool.mul(at(i, j), product(i, k)), -1.0));
+                pool.linear(0.0, &terms)
+            })
+            .collect(),
+    )
+}
+
+/// A link seen through its hinge.
+fn release(pool: &mut Pool, body: &Articulated, own: &Moved, spin: &Value) -> (Hinged, Articulated) {
+    let [turning, coupling, pushing] = &body.inertia;
+    let zero = pool.zero();
+    let column = Value(vec![turning.0[2], turning.0[5], turning.0[8]]);
+    let row = Value(coupling.0[6..].to_vec());
+    let inverse = pool.powi(turning.0[8], -1);
+    let by = [column.scaled(pool, inverse), row.scaled(pool, inverse)];
+    let drive = pool.sub(own.torque, body.bias[0].0[2]);
+    let rate = pool.mul(drive, inverse);
+    let less = |pool: &mut Pool, of: &Value, a: &Value, b: &Value| {
+        let product = a.outer(pool, b).negate(pool);
+        of.add(pool, &product)
+    };
+    let mut left = [
+        less(pool, turning, &column, &by[0]),
+        less(pool, coupling, &column, &by[1]),
+        less(pool, pushing, &row, &by[1]),
+    ];
+    left[0] = super::links::symmetric(&left[0]);
+    left[2] = super::links::symmetric(&left[2]);
+    for k in [2, 5, 6, 7, 8] {
+        left[0].0[k] = zero;
+    }
+    for k in 6..9 {
+        left[1].0[k] = zero;
+    }
+    // w x z times the hinge's speed.
+    let (x, y) = (pool.mul(spin.0[1], own.speed), pool.mul(spin.0[0], own.speed));
+    let own_turning = Value(vec![x, pool.neg(y), zero]);
+    let mut bias = [column, row].map(|of| of.scaled(pool, rate));
+    for (k, bias) in bias.iter_mut().enumerate() {
+        let turned = if k == 0 {
+            left[0].multiply(pool, &own_turning)
+        } else {
+            left[1].transpose().multiply(pool, &own_turning)
+        };
+        *bias = bias.add(pool, &body.bias[k]).add(pool, &turned);
+    }
+    bias[0].0[2] = own.torque;
+    (Hinged { by, rate, turning: own_turning }, Articulated { inertia: left, bias })
+}
+
+/// A link without its hinge, in the axes of its parent and about the parent's origin.
+fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Value) -> Articulated {
+    let [turning, coupling, pushing] = of.inertia;
+    let turn = |pool: &mut Pool, matrix: Value| {
+        let about = about_third(pool, own, &matrix);
+        link.fixed.multiply(pool, &about).multiply(pool, &link.fixed.transpose())
+    };
+    let (turning, coupling, pushing) = (turn(pool, turning), turn(pool, coupling), turn(pool, pushing));
+    let [moment, force] = of.bias.map(|bias| up(pool, link, own, &bias));
+    let (first, second) = (coupling.multiply(pool, pull), pushing.multiply(pool, pull));
+    let (moment, force) = (moment.add(pool, &first), force.add(pool, &second));
+    let arm = link.offset.cross(pool, &force);
+    let moment = moment.add(pool, &arm);
+    let skew = link.offset.skew(pool);
+    let lever = skew.multiply(pool, &pushing);
+    let shifted = coupling.add(pool, &lever);
+    let (one, other) = (skew.multiply(pool, &coupling.transpose()), shifted.multiply(pool, &skew).negate(pool));
+    let turning = super::links::symmetric(&turning.add(pool, &one).add(pool, &other));
+    Articulated { inertia: [turning, shifted, pushing], bias: [moment, force] }
+}
+
+/// R of a matrix R A R^T turned about the third axis, where A's parts that are equal are one.
+fn about_third(pool: &mut Pool, own: &Moved, of: &Value) -> Value {
+    let (c, s) = (own.cosine, own.sine);
+    let a = &of.0;
+    let difference = pool.sub(a[0], a[4]);
+    let sides = pool.add(a[1], a[3]);
+    let products = [pool.mul(s, difference), pool.mul(c, sides)];
+    let mixed = pool.sum(&products);
+    let (sine, cosine) = (pool.mul(s, mixed), pool.mul(c, mixed));
+    let mut turned = a.clone();
+    turned[0] = pool.sub(a[0], sine);
+    turned[4] = pool.add(a[4], sine);
+    turned[1] = pool.sub(cosine, a[3]);
+    turned[3] = pool.sub(cosine, a[1]);
+    for [x, y] in [[2, 5], [6, 7]] {
+        let [first, second] = rotated(pool, [c, s], [a[x], a[y]]);
+        (turned[x], turned[y]) = (first, second);
+    }
+    Value(turned)
+}
+
+fn rotated(pool: &mut Pool, [c, s]: [Id; 2], [x, y]: [Id; 2]) -> [Id; 2] {
+    let products = [pool.mul(c, x), pool.mul(s, y), pool.mul(s, x), pool.mul(c, y)];
+    [pool.sub(products[0], products[1]), pool.add(products[2], products[3])]
+}
+
+/// A vector of a link in its parent's axes.
+pub(super) fn up(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
+    let [x, y] = rotated(pool, [own.cosine, own.sine], [of.0[0], of.0[1]]);
+    link.fixed.multiply(pool, &Value(vec![x, y, of.0[2]]))
+}
+
+/// A vector of a link's parent in the link's axes.
+pub(super) fn down(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
+    let inside = link.fixed.transpose().multiply(pool, of);
+    let minus = pool.neg(own.sine);
+    let [x, y] = rotated(pool, [own.cosine, minus], [inside.0[0], inside.0[1]]);
+    Value(vec![x, y, inside.0[2]])
+}
