@@ -82,11 +82,6 @@ impl Value {
         }
     }
 
-    /// The multiple by a scalar.
-    pub fn scaled(&self, pool: &mut Pool, by: Id) -> Self {
-        Self(self.0.iter().map(|&a| pool.mul(a, by)).collect())
-    }
-
     /// The quotient by a scalar.
     pub fn divide(&self, pool: &mut Pool, divisor: Id) -> Self {
         Self(self.0.iter().map(|&a| pool.div(a, divisor)).collect())

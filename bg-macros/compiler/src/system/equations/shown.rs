@@ -3,6 +3,8 @@
 //! In: the graph's drawing, bond variables. Out: [`Shown`], which the reductions carry along and that keeps nothing
 //! alive: a quantity that needs a state which a scene leaves out is not known there.
 
+use std::collections::BTreeSet;
+
 use super::signals::Signals;
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 use crate::graph::Drawing;
@@ -39,7 +41,16 @@ impl Shown {
 
     /// Forgets what needs a state or switch that goes.
     pub fn prune(&mut self, pool: &Pool, known: &Known) {
-        let stays = |id: Id| known.has(pool, id);
+        self.retain(|id| known.has(pool, id));
+    }
+
+    /// Forgets what reads one of these symbols.
+    pub fn forget(&mut self, pool: &Pool, symbols: &BTreeSet<Symbol>) {
+        self.retain(|id| pool.symbols(&[id]).iter().all(|symbol| !symbols.contains(symbol)));
+    }
+
+    /// Forgets the quantities of which not all components stay.
+    fn retain(&mut self, stays: impl Fn(Id) -> bool) {
         self.map(|quantity| quantity.clone().filter(|ids| ids.iter().all(|&id| stays(id))));
     }
 

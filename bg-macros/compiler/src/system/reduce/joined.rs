@@ -165,9 +165,7 @@ impl Choice {
         let gap = reactions[row].slip.gap.unwrap_or(pool.zero());
         let at_start = substitute(pool, &[gap], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
         let is_guessed = pool.symbols(&[at_start]).into_iter().any(|symbol| matches!(symbol, Symbol::Unknown(_)));
-        let zero = pool.zero();
-        let is_rounding = value(pool, at_start).is_some_and(|gap| gap.abs() < ROUNDING);
-        is_guessed || is_rounding || same_polynomial(pool, at_start, zero)
+        is_guessed || vanishes(pool, at_start)
     }
 
     /// A row solved for the momentum of a body, with its position.
@@ -277,6 +275,12 @@ pub(super) struct Row {
     pub flow: Id,
     pub gap: Id,
     pub slopes: BTreeMap<usize, Id>,
+}
+
+/// Whether an expression is zero whatever its symbols are, or a number that is rounding.
+pub(super) fn vanishes(pool: &mut Pool, of: Id) -> bool {
+    let zero = pool.zero();
+    value(pool, of).is_some_and(|value| value.abs() < ROUNDING) || same_polynomial(pool, of, zero)
 }
 
 /// The value of an expression of numbers alone.

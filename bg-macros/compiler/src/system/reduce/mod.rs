@@ -53,13 +53,15 @@ struct Pass {
 /// What tells how many operations the rate function of equations takes.
 type Operations<'a> = dyn FnMut(&mut StateEquations) -> usize + 'a;
 
-/// The reductions in the order in which they find most.
-const PASSES: [Pass; 9] = [
-    Pass {
-        name: "parameters folded",
-        applies: always,
-        run: |equations, wanted, _, _| fold_parameters(equations, wanted),
-    },
+/// The reductions, in three parts, in the order in which they find most. First, what everything else is shorter by.
+const PARAMETERS: [Pass; 1] = [Pass {
+    name: "parameters folded",
+    applies: always,
+    run: |equations, wanted, _, _| fold_parameters(equations, wanted),
+}];
+
+/// States that are constant, equal or angles of others.
+const STATES: [Pass; 3] = [
     Pass {
         name: "constant states folded",
         applies: always,
@@ -75,6 +77,10 @@ const PASSES: [Pass; 9] = [
         applies: always,
         run: |equations, _, report, _| equal::merge(equations, report),
     },
+];
+
+/// What joints determine, and what is left.
+const JOINTS: [Pass; 5] = [
     Pass {
         name: "states of joints expressed",
         applies: |equations, _| !equations.reactions.is_empty(),
@@ -118,29 +124,33 @@ pub fn for_scene(
 ) -> (StateEquations, Report) {
     let mut report = Report::new(&equations);
     report.count("literal", equations.states.len(), operations(&mut equations));
-    let (parameters, others) = PASSES.split_at(1);
-    run(parameters, &mut equations, wanted, &mut report, operations);
+    run(&PARAMETERS, &mut equations, wanted, &mut report, operations);
     let by_tree = in_joint_coordinates(&equations, wanted, &report, operations);
-    let (folding, joints) = others.split_at(3);
-    run(folding, &mut equations, wanted, &mut report, operations);
-    if let Some((changed, told)) = by_tree {
-        let hinges = changed.states.iter().filter(|state| matches!(state.origin, Origin::Hinge(_))).count();
-        // The matrix of all reactions takes seconds and more to factor for bodies that keep all their states.
-        let is_long = hinges > SHORT && equations.states.len() >= KEPT * hinges;
-        if is_long {
-            return (changed, told);
-        }
-        run(joints, &mut equations, wanted, &mut report, operations);
-        return if cost(&changed, &told) < cost(&equations, &report) { (changed, told) } else { (equations, report) };
+    run(&STATES, &mut equations, wanted, &mut report, operations);
+    if let Some((changed, told)) = &by_tree
+        && is_long(changed, &equations)
+    {
+        return (changed.clone(), told.clone());
     }
-    run(joints, &mut equations, wanted, &mut report, operations);
-    (equations, report)
+    run(&JOINTS, &mut equations, wanted, &mut report, operations);
+    match by_tree {
+        Some((changed, told)) if cost(&changed, &told) < cost(&equations, &report) => (changed, told),
+        _ => (equations, report),
+    }
+}
+
+/// Whether the hinges of `changed` are so many that the matrix of all reactions of `equations`, whose bodies keep all
+/// their states, takes seconds and more to factor.
+fn is_long(changed: &StateEquations, equations: &StateEquations) -> bool {
+    let hinges = changed.states.iter().filter(|state| matches!(state.origin, Origin::Hinge(_))).count();
+    hinges > SHORT && equations.states.len() >= KEPT * hinges
 }
 
 /// More hinges are not compared with the matrix of all reactions, where bodies keep at least so many states each.
 const SHORT: usize = 4;
 const KEPT: usize = 14;
 
+/// Runs these reductions, where they apply.
 fn run(
     passes: &[Pass],
     equations: &mut StateEquations,
@@ -169,7 +179,8 @@ fn in_joint_coordinates(
     let (mut changed, mut told) = (equations.clone(), report.clone());
     tree::put(&mut changed, &mut told)?;
     told.count("hinges by their angles", changed.states.len(), operations(&mut changed));
-    run(&PASSES[1..], &mut changed, wanted, &mut told, operations);
+    run(&STATES, &mut changed, wanted, &mut told, operations);
+    run(&JOINTS, &mut changed, wanted, &mut told, operations);
     Some((changed, told))
 }
 

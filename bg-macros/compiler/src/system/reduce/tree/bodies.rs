@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use crate::expr::{Id, Node, Pool, Symbol, partial, same_polynomial, substitute};
 use crate::system::Value;
-use crate::system::equations::{Kind, Origin, StateEquations};
+use crate::system::equations::{Kind, Origin, State, StateEquations};
 use crate::system::reduce::is_constant;
 
 /// A rigid body.
@@ -28,6 +28,14 @@ pub(super) struct Body {
     pub mobility: Value,
     /// Its angular velocity, in inertial axes.
     pub spin: [Id; 3],
+}
+
+impl Body {
+    /// All its states.
+    pub fn states(&self) -> impl Iterator<Item = usize> + use<> {
+        let Self { place, axes, linear, angular, .. } = *self;
+        place.into_iter().chain(axes).chain(linear).chain(angular)
+    }
 }
 
 /// The symbol of a component of a body's velocity, of its angular velocity from the fourth component on.
@@ -69,7 +77,7 @@ fn linear(equations: &mut StateEquations, place: [usize; 3]) -> Option<([usize; 
     let mut slopes = [pool.zero(); 3];
     for k in 0..3 {
         let rate = states[place[k]].rate;
-        momenta[k] = momentum::<1>(pool, states, rate).ok()?[0];
+        momenta[k] = self::momenta::<1>(pool, states, rate)?[0];
         slopes[k] = partial(pool, &[rate], Symbol::state(momenta[k]))[0];
         let symbol = pool.symbol(Symbol::state(momenta[k]));
         if !is_constant(pool, slopes[k]) || pool.mul(slopes[k], symbol) != rate || slopes[k] != slopes[0] {
@@ -80,14 +88,10 @@ fn linear(equations: &mut StateEquations, place: [usize; 3]) -> Option<([usize; 
 }
 
 /// The momenta that an expression reads, if they are as many as are asked for.
-fn momentum<const N: usize>(
-    pool: &Pool,
-    states: &[crate::system::equations::State],
-    of: Id,
-) -> Result<[usize; N], Vec<usize>> {
+fn momenta<const N: usize>(pool: &Pool, states: &[State], of: Id) -> Option<[usize; N]> {
     let read = pool.symbols(&[of]).into_iter().filter_map(Symbol::as_state);
     let momenta: Vec<usize> = read.filter(|&state| states[state].origin.kind() == Kind::Momentum).collect();
-    momenta.try_into()
+    momenta.try_into().ok()
 }
 
 /// The angular momentum, J and w of R' = w x R with w = R J R^T h.
@@ -100,7 +104,7 @@ fn angular(equations: &mut StateEquations, axes: [usize; 9]) -> Option<([usize; 
         factor_of(pool, rates[3 * row], symbol)
     };
     let spin = [factor(pool, 1, 2).map(|minus| pool.neg(minus))?, factor(pool, 0, 2)?, factor(pool, 1, 0)?];
-    let momenta = momentum::<3>(pool, states, spin[0]).ok()?;
+    let momenta = self::momenta::<3>(pool, states, spin[0])?;
     let turned = symbols(pool, &axes);
     let skew = Value(spin.to_vec()).skew(pool);
     let expected = skew.multiply(pool, &turned);

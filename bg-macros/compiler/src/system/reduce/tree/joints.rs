@@ -11,8 +11,8 @@ use super::bodies::{Body, symbols, velocity};
 use super::numbers::{self, Matrix, Vector};
 use crate::expr::{Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute};
 use crate::system::Value;
-use crate::system::equations::StateEquations;
-use crate::system::reduce::joined::Choice;
+use crate::system::equations::{Slip, StateEquations};
+use crate::system::reduce::joined::{Choice, vanishes};
 use crate::system::reduce::{closing, friction, is_constant};
 
 /// A hinge from the parent, the ground where it is none, to the child.
@@ -27,6 +27,9 @@ pub(super) struct Hinge {
     /// Where the hinge is, in the axes of both, from their centres.
     pub at: [Value; 2],
 }
+
+/// How many symbols a probe has.
+pub(super) const PROBES: usize = 7;
 
 /// Symbols for proofs: a unit-free rotation of the parent, the sine, the cosine and the rate of the hinge.
 pub(super) struct Probe {
@@ -69,6 +72,12 @@ impl Probe {
 }
 
 impl Hinge {
+    /// The same from the child to the parent.
+    pub fn reversed(self) -> Self {
+        let Self { name, rows, parent, child, frames: [a, b], at: [c, d] } = self;
+        Self { name, rows, parent: Some(child), child: parent.unwrap_or(child), frames: [b, a], at: [d, c] }
+    }
+
     /// Each state and velocity of the child by those of the parent and the hinge; with `turned` the parent's axes are
     /// these.
     pub fn motion(
@@ -127,52 +136,70 @@ impl Hinge {
 /// The hinges among the rigid joints; `starts` has the values of the states at the start, for guesses.
 pub(super) fn of(equations: &mut StateEquations, bodies: &[Body], starts: &Environment<'_>) -> Vec<Hinge> {
     let rigid = friction::rigid(&equations.reactions);
-    let mut owner: BTreeMap<Symbol, usize> = BTreeMap::new();
-    for (index, body) in bodies.iter().enumerate() {
-        owner.extend((0..6).map(|k| (velocity(index, k), index)));
-        let states = body.place.iter().chain(&body.axes).chain(&body.linear).chain(&body.angular);
-        owner.extend(states.map(|&state| (Symbol::state(state), index)));
-    }
-    let mut loaded = Loaded::new();
-    for (index, state) in equations.states.iter().enumerate() {
-        for symbol in equations.pool.symbols(&[state.rate]) {
-            if matches!(symbol, Symbol::Multiplier(_)) {
-                loaded.entry(symbol).or_default().push(index);
-            }
-        }
-    }
-    let given = Given { owner, loaded, starts };
+    let given = Given::new(equations, bodies, starts);
     let joints = closing::of_joints(&equations.reactions, 0..rigid);
     joints.into_iter().filter_map(|rows| hinge(equations, bodies, &given, rows)).collect()
 }
-
-/// The states in whose rates each multiplier is.
-type Loaded = BTreeMap<Symbol, Vec<usize>>;
 
 /// What is known of all bodies.
 struct Given<'a> {
     /// Whose states and velocities symbols are.
     owner: BTreeMap<Symbol, usize>,
-    loaded: Loaded,
+    /// The velocity of each momentum.
+    speeds: BTreeMap<usize, Symbol>,
+    /// Momenta by velocities, where these are as long.
+    by_velocities: BTreeMap<Symbol, Id>,
+    /// Velocities by momenta.
+    by_momenta: BTreeMap<Symbol, Id>,
+    /// The states in whose rates each multiplier is.
+    loaded: BTreeMap<Symbol, Vec<usize>>,
     starts: &'a Environment<'a>,
 }
 
+impl<'a> Given<'a> {
+    fn new(equations: &mut StateEquations, bodies: &[Body], starts: &'a Environment<'a>) -> Self {
+        let StateEquations { pool, states, .. } = equations;
+        let (mut owner, mut speeds) = (BTreeMap::new(), BTreeMap::new());
+        let (mut by_velocities, mut by_momenta) = (BTreeMap::new(), BTreeMap::new());
+        for (index, body) in bodies.iter().enumerate() {
+            owner.extend((0..6).map(|k| (velocity(index, k), index)));
+            owner.extend(body.states().map(|state| (Symbol::state(state), index)));
+            let momenta = body.linear.iter().chain(&body.angular);
+            speeds.extend(momenta.enumerate().map(|(k, &state)| (state, velocity(index, k))));
+            for k in 0..3 {
+                let [speed, momentum] = [velocity(index, k), Symbol::state(body.linear[k])];
+                let [by_speed, by_momentum] = [speed, momentum].map(|symbol| pool.symbol(symbol));
+                by_velocities.insert(momentum, pool.mul(body.mass, by_speed));
+                by_momenta.insert(speed, pool.div(by_momentum, body.mass));
+                by_momenta.insert(velocity(index, k + 3), body.spin[k]);
+            }
+        }
+        let mut loaded: BTreeMap<Symbol, Vec<usize>> = BTreeMap::new();
+        for (index, state) in states.iter().enumerate() {
+            let symbols = pool.symbols(&[state.rate]).into_iter();
+            for multiplier in symbols.filter(|symbol| matches!(symbol, Symbol::Multiplier(_))) {
+                loaded.entry(multiplier).or_default().push(index);
+            }
+        }
+        Self { owner, speeds, by_velocities, by_momenta, loaded, starts }
+    }
+}
+
 fn hinge(equations: &mut StateEquations, bodies: &[Body], given: &Given<'_>, rows: Vec<usize>) -> Option<Hinge> {
-    let Given { owner, loaded, starts } = given;
     if rows.len() != 5 {
         return None;
     }
-    let flows: Vec<Id> = rows.iter().map(|&row| equations.reactions[row].slip.flow).collect();
-    let flows = by_velocities(&mut equations.pool, bodies, &flows);
-    let flows = numbers::folded(&mut equations.pool, &flows);
-    let gaps: Vec<Id> = rows.iter().filter_map(|&row| equations.reactions[row].slip.gap).collect();
-    let gaps = numbers::folded(&mut equations.pool, &gaps);
-    let both: Vec<Id> = flows.iter().chain(&gaps).copied().collect();
+    let slips: Vec<&Slip> = rows.iter().map(|&row| &equations.reactions[row].slip).collect();
+    let flows: Vec<Id> = slips.iter().map(|slip| slip.flow).collect();
+    let gaps: Vec<Id> = slips.iter().map(|slip| slip.gap).collect::<Option<_>>()?;
+    let name = slips[0].joint.clone();
+    let pool = &mut equations.pool;
+    let flows = substitute(pool, &flows, &|symbol| given.by_velocities.get(&symbol).copied());
+    let [flows, gaps] = [flows, gaps].map(|ids| numbers::folded(pool, &ids));
     let mut ends = BTreeSet::new();
-    for symbol in equations.pool.symbols(&both) {
-        match symbol {
-            Symbol::Parameter(_) => {}
-            _ => _ = ends.insert(*owner.get(&symbol)?),
+    for symbol in pool.symbols(&[&flows[..], &gaps].concat()) {
+        if !matches!(symbol, Symbol::Parameter(_)) {
+            ends.insert(*given.owner.get(&symbol)?);
         }
     }
     let ends: Vec<usize> = ends.into_iter().collect();
@@ -181,76 +208,73 @@ fn hinge(equations: &mut StateEquations, bodies: &[Body], given: &Given<'_>, row
         [parent, child] => (Some(parent), child),
         _ => return None,
     };
-    let pool = &mut equations.pool;
-    let by = |pool: &mut Pool, first: usize| -> Vec<Vec<Id>> {
+    let [of_velocity, of_spin] = [0, 3].map(|first| -> Vec<Vec<Id>> {
         (first..first + 3).map(|k| partial(pool, &flows, velocity(child, k))).collect()
-    };
-    let (of_velocity, of_spin) = (by(pool, 0), by(pool, 3));
+    });
     let is_moved = |row: &usize| of_velocity.iter().any(|column| !pool.is_zero(column[*row]));
     let (translations, rotations): (Vec<usize>, Vec<usize>) = (0..5).partition(is_moved);
     let (&[x, y, z], &[first, second]) = (&translations[..], &rotations[..]) else { return None };
-    // The axis, where the bodies start.
-    let at_start = |pool: &Pool, row: usize| -> Vector {
-        let ids: Vec<Id> = of_spin.iter().map(|column| column[row]).collect();
-        evaluate(pool, &ids, starts).try_into().expect("three components")
-    };
-    let axis = numbers::unit(&numbers::cross(&at_start(pool, first), &at_start(pool, second)))?;
-    let turned = |body: usize| bodies[body].axes.map(|state| starts.states[state]);
-    let own = |body: Option<usize>| match body {
-        Some(body) => numbers::applied(&numbers::transposed(&turned(body)), &axis),
-        None => axis,
-    };
-    let [on_parent, on_child] = [own(parent), own(Some(child))].map(|axis| numbers::cleaned(&axis));
-    let upright = numbers::upright(&on_child);
-    let frames =
-        if numbers::are_near(&on_parent, &on_child) { [upright; 2] } else { [numbers::upright(&on_parent), upright] };
-    // The points, where the gap says x_b + R_b s_b - x_a - R_a s_a.
-    let mut at: Vec<Value> = Vec::new();
-    for body in [parent, Some(child)] {
-        let Some(body) = body else {
-            let zero = pool.zero();
-            let states: Vec<Symbol> =
-                bodies[child].place.iter().chain(&bodies[child].axes).map(|&s| Symbol::state(s)).collect();
-            let mut place = Vec::new();
-            for (k, row) in [x, y, z].into_iter().enumerate() {
-                let by = partial(pool, &[gaps[row]], states[k])[0];
-                let rest = substitute(pool, &[gaps[row]], &|symbol| states.contains(&symbol).then_some(zero))[0];
-                let rest = pool.div(rest, by);
-                place.push(pool.neg(rest));
-            }
-            at.push(Value(place));
-            continue;
-        };
-        let by = partial(pool, &[gaps[x]], Symbol::state(bodies[body].place[0]))[0];
-        pool.as_number(by).filter(|&by| by != 0.0)?;
-        let arms = (0..3).map(|k| {
-            let slope = partial(pool, &[gaps[x]], Symbol::state(bodies[body].axes[k]))[0];
-            pool.div(slope, by)
-        });
-        at.push(Value(arms.collect()));
-    }
-    if !at.iter().flat_map(|at| &at.0).all(|&id| is_constant(pool, id)) {
-        return None;
-    }
-    let name = equations.reactions[rows[0]].slip.joint.clone();
-    let at: [Value; 2] = at.try_into().ok()?;
+    let directions = [first, second].map(|row| of_spin.iter().map(|column| column[row]).collect());
+    let frames = frames(pool, [parent, Some(child)].map(|body| body.map(|body| &bodies[body])), &directions, given)?;
+    let at = points(pool, bodies, (parent, child), [x, y, z].map(|row| gaps[row]))?;
     let hinge = Hinge { name, rows, parent, child, frames, at };
     let is_proved = holds(equations, bodies, &hinge, (&flows, &gaps))
-        && starts_so(equations, bodies, &hinge)
-        && works_not(equations, bodies, &hinge, (&flows, loaded));
+        && starts_so(equations, bodies, &hinge, given)
+        && works_not(equations, &hinge, (&flows, given));
     is_proved.then_some(hinge)
 }
 
-/// Expressions with the bodies' velocities in place of their momenta.
-fn by_velocities(pool: &mut Pool, bodies: &[Body], ids: &[Id]) -> Vec<Id> {
-    let mut images = BTreeMap::new();
-    for (index, body) in bodies.iter().enumerate() {
-        for k in 0..3 {
-            let own = pool.symbol(velocity(index, k));
-            images.insert(Symbol::state(body.linear[k]), pool.mul(body.mass, own));
+/// Axes on both ends whose third is the hinge's: where the bodies start it is across both held directions.
+fn frames(
+    pool: &Pool,
+    ends: [Option<&Body>; 2],
+    directions: &[Vec<Id>; 2],
+    Given { starts, .. }: &Given<'_>,
+) -> Option<[Matrix; 2]> {
+    let at_start = |ids: &Vec<Id>| -> Vector { evaluate(pool, ids, starts).try_into().expect("three components") };
+    let axis = numbers::unit(&numbers::cross(&at_start(&directions[0]), &at_start(&directions[1])))?;
+    let [on_parent, on_child] = ends.map(|body| {
+        let own = body.map(|body| numbers::transposed(&body.axes.map(|state| starts.states[state])));
+        numbers::cleaned(&own.map_or(axis, |axes| numbers::applied(&axes, &axis)))
+    });
+    let upright = numbers::upright(&on_child);
+    let is_one = numbers::are_near(&on_parent, &on_child);
+    Some([if is_one { upright } else { numbers::upright(&on_parent) }, upright])
+}
+
+/// Where the hinge is on both ends, by its gap x_b + R_b s_b - x_a - R_a s_a; none where that changes.
+fn points(
+    pool: &mut Pool,
+    bodies: &[Body],
+    (parent, child): (Option<usize>, usize),
+    gap: [Id; 3],
+) -> Option<[Value; 2]> {
+    let arm = |pool: &mut Pool, body: &Body| -> Option<Value> {
+        let by = partial(pool, &gap[..1], Symbol::state(body.place[0]))[0];
+        pool.as_number(by).filter(|&by| by != 0.0)?;
+        let slopes = body.axes[..3].iter().map(|&state| {
+            let slope = partial(pool, &gap[..1], Symbol::state(state))[0];
+            pool.div(slope, by)
+        });
+        Some(Value(slopes.collect()))
+    };
+    let on_child = arm(pool, &bodies[child])?;
+    let on_parent = match parent {
+        Some(parent) => arm(pool, &bodies[parent])?,
+        None => {
+            let (body, zero) = (&bodies[child], pool.zero());
+            let states: BTreeSet<Symbol> = body.place.iter().chain(&body.axes).map(|&s| Symbol::state(s)).collect();
+            let rest = substitute(pool, &gap, &|symbol| states.contains(&symbol).then_some(zero));
+            let parts = (0..3).map(|k| {
+                let by = partial(pool, &gap[k..=k], Symbol::state(body.place[k]))[0];
+                let part = pool.div(rest[k], by);
+                pool.neg(part)
+            });
+            Value(parts.collect())
         }
-    }
-    substitute(pool, ids, &|symbol| images.get(&symbol).copied())
+    };
+    let is_fixed = on_parent.0.iter().chain(&on_child.0).all(|&id| is_constant(pool, id));
+    is_fixed.then_some([on_parent, on_child])
 }
 
 /// Whether the rows hold a hinge's five directions, no less and no more, at any angle and in any pose.
@@ -262,7 +286,7 @@ fn holds(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, (flows,
     let all: Vec<Id> = flows.iter().chain(gaps).copied().collect();
     let found = substitute(pool, &all, &|symbol| images.get(&symbol).copied());
     let zero = pool.zero();
-    if gaps.len() != 5 || !found.into_iter().all(|id| same_polynomial(pool, id, zero)) {
+    if !found.into_iter().all(|id| same_polynomial(pool, id, zero)) {
         return false;
     }
     // What the child's velocities have to be: by the velocity the three translations, by the spin the two rotations.
@@ -291,77 +315,44 @@ fn holds(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, (flows,
 }
 
 /// Whether the bodies start with their axes and points together, and at a speed that the rows allow.
-fn starts_so(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge) -> bool {
+fn starts_so(equations: &mut StateEquations, bodies: &[Body], hinge: &Hinge, given: &Given<'_>) -> bool {
     if !hinge.rows.iter().all(|&row| Choice::is_closed(equations, row)) {
         return false;
     }
-    let StateEquations { pool, states, .. } = &mut *equations;
-    let [parent, child] = [hinge.parent, Some(hinge.child)].map(|body| match body {
+    let StateEquations { pool, states, reactions, .. } = equations;
+    let axes = [hinge.parent, Some(hinge.child)].map(|body| match body {
         Some(body) => Value(bodies[body].axes.iter().map(|&state| states[state].start).collect()),
         None => Value::identity(pool),
     });
-    let axes = [0, 1].map(|end| numbers::constant(pool, &numbers::column(&hinge.frames[end], 2)));
-    let (a, b) = (parent.multiply(pool, &axes[0]), child.multiply(pool, &axes[1]));
-    let [a, b] = [a, b].map(|of| Value(numbers::folded(pool, &of.0)));
-    let is_near = a.0.iter().zip(&b.0).all(|(&a, &b)| {
-        let apart = pool.sub(a, b);
-        pool.as_number(apart).map_or_else(|| same_polynomial(pool, a, b), |apart| apart.abs() < 1e-12)
+    let [a, b] = [0, 1].map(|end| {
+        let axis = numbers::constant(pool, &numbers::column(&hinge.frames[end], 2));
+        axes[end].multiply(pool, &axis)
     });
-    is_near && hinge.rows.iter().all(|&row| fits_at_start(equations, bodies, row))
-}
-
-/// Whether the flow of a row is zero at the start.
-fn fits_at_start(equations: &mut StateEquations, bodies: &[Body], row: usize) -> bool {
-    let StateEquations { pool, states, reactions, .. } = equations;
-    let mut images = BTreeMap::new();
-    for (index, body) in bodies.iter().enumerate() {
-        for k in 0..3 {
-            let momentum = pool.symbol(Symbol::state(body.linear[k]));
-            images.insert(velocity(index, k), pool.div(momentum, body.mass));
-            images.insert(velocity(index, k + 3), body.spin[k]);
-        }
-    }
-    let flow = substitute(pool, &[reactions[row].slip.flow], &|symbol| images.get(&symbol).copied());
-    let start = substitute(pool, &flow, &|symbol| symbol.as_state().map(|state| states[state].start));
-    let start = numbers::folded(pool, &start)[0];
-    let zero = pool.zero();
-    pool.as_number(start).map_or_else(|| same_polynomial(pool, start, zero), |start| start.abs() < 1e-12)
+    let back = b.negate(pool);
+    let apart = a.add(pool, &back).0;
+    let flows: Vec<Id> = hinge.rows.iter().map(|&row| reactions[row].slip.flow).collect();
+    let flows = substitute(pool, &flows, &|symbol| given.by_momenta.get(&symbol).copied());
+    let flows = substitute(pool, &flows, &|symbol| symbol.as_state().map(|state| states[state].start));
+    let all = numbers::folded(pool, &[apart, flows].concat());
+    all.into_iter().all(|id| vanishes(pool, id))
 }
 
 /// Whether each reaction acts linearly on bodies' momenta alone and works on nothing but the flow of its row.
-fn works_not(
-    equations: &mut StateEquations,
-    bodies: &[Body],
-    hinge: &Hinge,
-    (flows, loaded): (&[Id], &Loaded),
-) -> bool {
-    let momenta: BTreeMap<usize, Symbol> = bodies
-        .iter()
-        .enumerate()
-        .flat_map(|(index, body)| {
-            let states = body.linear.iter().chain(&body.angular);
-            states.enumerate().map(move |(k, &state)| (state, velocity(index, k)))
-        })
-        .collect();
+fn works_not(equations: &mut StateEquations, hinge: &Hinge, (flows, given): (&[Id], &Given<'_>)) -> bool {
     let StateEquations { pool, states, reactions, .. } = equations;
-    for (&row, &flow) in hinge.rows.iter().zip(flows) {
+    hinge.rows.iter().zip(flows).all(|(&row, &flow)| {
         let multiplier = reactions[row].multiplier;
         let mut powers = Vec::new();
-        for &state in loaded.get(&multiplier).into_iter().flatten() {
-            let load = partial(pool, &[states[state].rate], multiplier)[0];
-            let load = numbers::folded(pool, &[load])[0];
-            let Some(&speed) = momenta.get(&state) else { return false };
+        for &state in given.loaded.get(&multiplier).into_iter().flatten() {
+            let load = partial(pool, &[states[state].rate], multiplier);
+            let load = numbers::folded(pool, &load)[0];
+            let speed = given.speeds.get(&state).filter(|_| !pool.symbols(&[load]).contains(&multiplier));
+            let Some(&speed) = speed else { return false };
             let speed = pool.symbol(speed);
-            if pool.symbols(&[load]).contains(&multiplier) {
-                return false;
-            }
             powers.push(pool.mul(load, speed));
         }
         let power = pool.sum(&powers);
         let opposite = pool.neg(flow);
-        if !same_polynomial(pool, power, flow) && !same_polynomial(pool, power, opposite) {
-            return false;
-        }
-    }
-    true
+        same_polynomial(pool, power, flow) || same_polynomial(pool, power, opposite)
+    })
 }

@@ -68,7 +68,7 @@ pub(super) fn of(pool: &mut Pool, bodies: &[Body], hinges: &[Hinge]) -> Vec<Link
         let tensor = body.mobility.inverse(pool);
         let central = back.multiply(pool, &tensor).multiply(pool, &axes);
         let central = symmetric(&central);
-        let first = centre.scaled(pool, body.mass);
+        let first = centre.multiply(pool, &Value::scalar(body.mass));
         let none = Value::zero(pool, 3);
         let about = steiner(pool, body.mass, &none, &centre);
         let about = central.add(pool, &about);
@@ -108,7 +108,7 @@ fn lighten(pool: &mut Pool, links: &mut [Link], index: usize) {
     let equal = Value::diagonal(pool, &[moment, moment, zero]);
     let turned = link.fixed.multiply(pool, &equal).multiply(pool, &link.fixed.transpose());
     let shifted = steiner(pool, mass, &along, &link.offset);
-    let mass_there = link.offset.scaled(pool, mass);
+    let mass_there = link.offset.multiply(pool, &Value::scalar(mass));
     let (own_mass, own_first, own_about) = links[parent].counted.clone();
     let about = own_about.add(pool, &symmetric(&turned)).add(pool, &shifted);
     let first = own_first.add(pool, &along).add(pool, &mass_there);
@@ -118,7 +118,7 @@ fn lighten(pool: &mut Pool, links: &mut [Link], index: usize) {
 /// What a tensor about a point gains seen from elsewhere: the point is at `by`, where the first moment about it is
 /// `first`.
 fn steiner(pool: &mut Pool, mass: Id, first: &Value, by: &Value) -> Value {
-    let moment = by.scaled(pool, mass);
+    let moment = by.multiply(pool, &Value::scalar(mass));
     let twice = first.scale(pool, 2.0);
     let size = moment.add(pool, &twice).dot(pool, by);
     let size = Value::diagonal(pool, &[size; 3]);

@@ -28,14 +28,6 @@ pub(super) fn coordinates(pool: &mut Pool, first: usize, count: usize) -> Vec<Co
     (0..count).map(|k| Coordinate { angle: symbol(2 * k), speed: symbol(2 * k + 1) }).collect()
 }
 
-impl Hinge {
-    /// The same from the child to the parent.
-    pub fn reversed(self) -> Self {
-        let Self { name, rows, parent, child, frames: [a, b], at: [c, d] } = self;
-        Self { name, rows, parent: Some(child), child: parent.unwrap_or(child), frames: [b, a], at: [d, c] }
-    }
-}
-
 /// The bodies that a node reads; none where it reads something else or many.
 type Reads = Option<BTreeSet<usize>>;
 
@@ -116,9 +108,14 @@ pub(super) fn axes(pool: &mut Pool, links: &[Link], before: &[Value], index: usi
 }
 
 /// Each state and velocity of the bodies.
-pub(super) fn images(pool: &mut Pool, bodies: &[Body], links: &[Link], moved: &[Moved]) -> BTreeMap<Symbol, Id> {
+pub(super) fn images(
+    pool: &mut Pool,
+    bodies: &[Body],
+    links: &[Link],
+    moved: &[Moved],
+    Velocities { spins, centres }: &Velocities,
+) -> BTreeMap<Symbol, Id> {
     let mut images = BTreeMap::new();
-    let (speeds, spins) = (speeds(pool, links, moved), spins(pool, links, moved));
     let mut all: Vec<Value> = Vec::new();
     let mut origins: Vec<Value> = Vec::new();
     for (k, link) in links.iter().enumerate() {
@@ -133,8 +130,8 @@ pub(super) fn images(pool: &mut Pool, bodies: &[Body], links: &[Link], moved: &[
         let centre = own.multiply(pool, &link.centre);
         let place = origin.add(pool, &centre);
         let turned = own.multiply(pool, &link.axes.transpose());
-        let velocity_there = own.multiply(pool, &speeds[k]);
-        let momentum = velocity_there.scaled(pool, link.mass);
+        let velocity_there = own.multiply(pool, &centres[k]);
+        let momentum = velocity_there.multiply(pool, &Value::scalar(link.mass));
         let spin = own.multiply(pool, &spins[k]);
         let inside = link.central.multiply(pool, &spins[k]);
         let angular = own.multiply(pool, &inside);
@@ -156,34 +153,47 @@ pub(super) fn images(pool: &mut Pool, bodies: &[Body], links: &[Link], moved: &[
     images
 }
 
-/// The velocity of each link's centre of mass, in its axes.
-fn speeds(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Vec<Value> {
-    let spins = spins(pool, links, moved);
-    let mut origins: Vec<Value> = Vec::new();
-    let mut centres = Vec::new();
-    for (k, link) in links.iter().enumerate() {
-        let origin = match link.parent {
-            Some(parent) => {
-                let beside = spins[parent].cross(pool, &link.offset);
-                let there = origins[parent].add(pool, &beside);
-                down(pool, link, &moved[k], &there)
-            }
-            None => Value::zero(pool, 3),
-        };
-        let beside = spins[k].cross(pool, &link.centre);
-        centres.push(origin.add(pool, &beside));
-        origins.push(origin);
+/// How links move, in their axes.
+pub(super) struct Velocities {
+    /// The angular velocities.
+    pub spins: Vec<Value>,
+    /// The velocities of the centres of mass.
+    pub centres: Vec<Value>,
+}
+
+impl Velocities {
+    pub fn of(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Self {
+        let spins = spins(pool, links, moved);
+        let mut origins: Vec<Value> = Vec::new();
+        let mut centres = Vec::new();
+        for (k, link) in links.iter().enumerate() {
+            let origin = match link.parent {
+                Some(parent) => {
+                    let beside = spins[parent].cross(pool, &link.offset);
+                    let there = origins[parent].add(pool, &beside);
+                    down(pool, link, &moved[k], &there)
+                }
+                None => Value::zero(pool, 3),
+            };
+            let beside = spins[k].cross(pool, &link.centre);
+            centres.push(origin.add(pool, &beside));
+            origins.push(origin);
+        }
+        Self { spins, centres }
     }
-    centres
 }
 
 /// Writes the kinetic energies in the links' axes.
-pub(super) fn energies(equations: &mut StateEquations, bodies: &[Body], links: &[Link], moved: &[Moved]) {
+pub(super) fn energies(
+    equations: &mut StateEquations,
+    bodies: &[Body],
+    links: &[Link],
+    Velocities { spins, centres }: &Velocities,
+) {
     let pool = &mut equations.pool;
-    let (speeds, spins) = (speeds(pool, links, moved), spins(pool, links, moved));
     for (k, link) in links.iter().enumerate() {
         let body = &bodies[link.hinge.child];
-        let fast = speeds[k].dot(pool, &speeds[k]);
+        let fast = centres[k].dot(pool, &centres[k]);
         let fast = pool.mul(fast, link.mass);
         let inside = link.central.multiply(pool, &spins[k]);
         let turning = spins[k].dot(pool, &inside);

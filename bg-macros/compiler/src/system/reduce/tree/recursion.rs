@@ -54,9 +54,8 @@ pub(super) fn spins(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Vec<Val
     spins
 }
 
-/// The rates of the speeds, where the ground has this acceleration.
-pub(super) fn rates(pool: &mut Pool, links: &[Link], moved: &[Moved], ground: &Value) -> Vec<Id> {
-    let spins = spins(pool, links, moved);
+/// The rates of the speeds, where links have these angular velocities and the ground this acceleration.
+pub(super) fn rates(pool: &mut Pool, links: &[Link], moved: &[Moved], spins: &[Value], ground: &Value) -> Vec<Id> {
     let squares: Vec<Value> = spins.iter().map(|spin| square(pool, spin)).collect();
     let mut bodies: Vec<Articulated> = Vec::new();
     for (k, link) in links.iter().enumerate() {
@@ -167,7 +166,7 @@ fn release(pool: &mut Pool, body: &Articulated, own: &Moved, spin: &Value) -> (H
     let column = Value(vec![turning.0[2], turning.0[5], turning.0[8]]);
     let row = Value(coupling.0[6..].to_vec());
     let inverse = pool.powi(turning.0[8], -1);
-    let by = [column.scaled(pool, inverse), row.scaled(pool, inverse)];
+    let by = [column.multiply(pool, &Value::scalar(inverse)), row.multiply(pool, &Value::scalar(inverse))];
     let drive = pool.sub(own.torque, body.bias[0].0[2]);
     let rate = pool.mul(drive, inverse);
     let less = |pool: &mut Pool, of: &Value, a: &Value, b: &Value| {
@@ -190,7 +189,7 @@ fn release(pool: &mut Pool, body: &Articulated, own: &Moved, spin: &Value) -> (H
     // w x z times the hinge's speed.
     let (x, y) = (pool.mul(spin.0[1], own.speed), pool.mul(spin.0[0], own.speed));
     let own_turning = Value(vec![x, pool.neg(y), zero]);
-    let mut bias = [column, row].map(|of| of.scaled(pool, rate));
+    let mut bias = [column, row].map(|of| of.multiply(pool, &Value::scalar(rate)));
     for (k, bias) in bias.iter_mut().enumerate() {
         let turned = if k == 0 {
             left[0].multiply(pool, &own_turning)

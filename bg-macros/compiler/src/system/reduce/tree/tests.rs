@@ -144,7 +144,8 @@ fn loads_of_all_kinds_are_those_of_the_bodies() {
     agrees(&scene);
 }
 
-/// Chains for which the matrix of all reactions would take minutes: each hinge after the first few takes as many operations.
+/// Chains for which the matrix of all reactions would take minutes: each hinge after the first few takes as many
+/// operations.
 #[test]
 fn operations_grow_as_the_number_of_hinges() {
     let count = |hinges: usize| {
@@ -167,4 +168,17 @@ fn a_loop_and_dry_friction_leave_bodies_as_they_are() {
         let mut report = crate::system::reduce::Report::new(&equations);
         assert!(super::put(&mut equations, &mut report).is_none(), "{others}");
     }
+}
+
+/// What pictures would show of a reaction is not known, and the rest is a number.
+#[test]
+fn pictures_show_what_is_known() {
+    let scene = scene(&format!("{} {}", chain(&["y", "z"], ""), observed(2, "")), "tune {}");
+    let [literal, reduced] = [&scene.literal, &scene.reduced].map(|of| of.shown.quantities());
+    let known = reduced.iter().filter(|quantity| quantity.is_some()).count();
+    assert!(known > 20 && known < literal.len(), "{known} of {}", literal.len());
+    let states = vec![0.3; scene.reduced.states.len()];
+    let ids: Vec<Id> = reduced.into_iter().flatten().flatten().copied().collect();
+    let values = evaluate(&scene.reduced.pool, &ids, &Environment { states: &states, ..Environment::default() });
+    assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
 }
