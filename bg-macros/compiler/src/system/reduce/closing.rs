@@ -9,7 +9,7 @@
 use std::collections::BTreeSet;
 
 use super::friction;
-use crate::expr::{Id, Pool, partial};
+use crate::expr::{Id, Pool, Symbol, partial};
 use crate::system::equations::impact::Moves;
 use crate::system::equations::{Kind, Origin, Reaction, State, StateEquations};
 
@@ -68,6 +68,16 @@ pub(super) fn of_joints(reactions: &[Reaction], rows: impl Iterator<Item = usize
         }
     }
     joints
+}
+
+/// How much one unit of a reaction changes the rate of its flow: by its loads, each the rate of a momentum by it.
+pub(super) fn mobility(pool: &mut Pool, flow: Id, loads: &[(usize, Id)]) -> Id {
+    let part = |&(state, load): &(usize, Id)| {
+        let slope = partial(pool, &[flow], Symbol::state(state))[0];
+        pool.mul(slope, load)
+    };
+    let parts: Vec<Id> = loads.iter().map(part).collect();
+    pool.sum(&parts)
 }
 
 /// Whether reactions may change states of this kind.

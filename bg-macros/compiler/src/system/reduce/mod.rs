@@ -83,7 +83,7 @@ const STATES: [Pass; 3] = [
 const JOINTS: [Pass; 5] = [
     Pass {
         name: "states of joints expressed",
-        applies: |equations, _| !equations.reactions.is_empty(),
+        applies: |equations, _| !equations.reactions.is_empty() && !tree::is_put(equations),
         run: |equations, wanted, report, operations| {
             report.kept = speeds::choose(equations, wanted, report, operations).err();
         },

@@ -105,23 +105,15 @@ fn put(equations: &mut StateEquations, choice: &Choice) -> Result<(), Kept> {
 fn keep_mobilities(equations: &mut StateEquations, choice: &Choice) -> bool {
     let StateEquations { pool, states, reactions, .. } = equations;
     for (row, reaction) in reactions.iter_mut().enumerate().filter(|(row, _)| !choice.is_solved(*row)) {
-        let loads = if row < choice.rigid {
-            choice.loads[row].clone()
+        let loads: Option<Vec<(usize, Id)>> = if row < choice.rigid {
+            choice.loads[row].as_ref().map(|loads| loads.iter().map(|(&state, &load)| (state, load)).collect())
         } else {
             // Dry friction and stops act on their guards, too.
             let by = |&state: &usize| (state, partial(pool, &[states[state].rate], reaction.multiplier)[0]);
             Some(choice.velocities.keys().map(by).collect())
         };
         let Some(loads) = loads else { return false };
-        let slip = &mut reaction.slip;
-        let parts: Vec<Id> = loads
-            .iter()
-            .map(|(&state, &load): (&usize, &Id)| {
-                let slope = partial(pool, &[slip.flow], Symbol::state(state))[0];
-                pool.mul(slope, load)
-            })
-            .collect();
-        slip.mobility = Some(pool.sum(&parts));
+        reaction.slip.mobility = Some(closing::mobility(pool, reaction.slip.flow, &loads));
     }
     true
 }

@@ -30,20 +30,7 @@ pub(super) fn of(
             [&body.angular, &body.linear].map(|of| Value(of.iter().map(|&state| states[state].rate).collect()))
         })
         .collect();
-    let falls: Vec<Value> = links
-        .iter()
-        .zip(&forces)
-        .map(|(link, [_, force])| {
-            let constant: Vec<Id> = force.0.iter().map(|&id| constant_part(pool, id)).collect();
-            Value(constant).divide(pool, link.mass)
-        })
-        .collect();
-    let is_one = falls.iter().all(|fall| *fall == falls[0]);
-    let fall = if is_one { falls[0].clone() } else { Value(vec![zero; 3]) };
-    for (link, force) in links.iter().zip(&mut forces) {
-        let weight = fall.multiply(pool, &Value::scalar(link.mass)).negate(pool);
-        force[1] = force[1].add(pool, &weight);
-    }
+    let fall = fall(pool, links, &mut forces);
     let mut torques = vec![zero; links.len()];
     for k in (0..links.len()).rev() {
         torques[k] = torque(pool, bodies, links, &mut forces, k);
@@ -64,6 +51,30 @@ pub(super) fn of(
         moved.push(own);
     }
     (moved, fall.negate(pool))
+}
+
+/// The acceleration by which weights move all links, in place of these; zero where constant forces are no such weights.
+fn fall(pool: &mut Pool, links: &[Link], forces: &mut [[Value; 2]]) -> Value {
+    let weight = |pool: &mut Pool, force: &Value| Value(force.0.iter().map(|&id| constant_part(pool, id)).collect());
+    let weights: Vec<Value> = forces.iter().map(|[_, force]| weight(pool, force)).collect();
+    let falls: Vec<Value> =
+        links.iter().zip(&weights).map(|(link, weight)| weight.divide(pool, link.mass)).collect();
+    if !falls.iter().all(|fall| is_alike(pool, fall, &falls[0])) {
+        return Value::zero(pool, 3);
+    }
+    for ([_, force], weight) in forces.iter_mut().zip(&weights) {
+        let back = weight.negate(pool);
+        *force = force.add(pool, &back);
+    }
+    falls[0].clone()
+}
+
+/// Whether vectors are one, but for the rounding of m g / m.
+fn is_alike(pool: &Pool, a: &Value, b: &Value) -> bool {
+    let near = |a: f64, b: f64| (a - b).abs() <= 4.0 * f64::EPSILON * a.abs();
+    a.0.iter().zip(&b.0).all(|(&a, &b)| {
+        a == b || pool.as_number(a).zip(pool.as_number(b)).is_some_and(|(a, b)| near(a, b))
+    })
 }
 
 /// What of a sum depends on parameters alone.

@@ -1,11 +1,11 @@
 //! Bodies on hinges in joint coordinates.
 //!
-//! In: equations with bodies of eighteen states each and rigid joints, all of them hinges of trees that stand on the
+//! In: equations with bodies of eighteen states each and rigid joints, among them hinges of trees that stand on the
 //! ground. Out: the same with an angle and a speed for each hinge; poses and momenta of bodies are expressions of
 //! these. Method: with the motion of a hinge in place of that of a body the gaps and flows of its joint are zero
 //! identically (`joints`), so no motion is lost; its reactions work on none of these motions, so they occur in none of
-//! the rates. These are found from tip to ground and back (`recursion`). Where anything else is held, as by a joint
-//! that closes a loop, a stop or dry friction, the equations stay as they are.
+//! the rates. These are found from tip to ground and back (`recursion`). What else is held, by joints that close loops,
+//! stops and dry friction, keeps its reactions, which are loads to the tree.
 
 mod bodies;
 mod joints;
@@ -17,29 +17,35 @@ mod recursion;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::friction;
 use super::report::{Fate, Report};
-use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, substitute};
-use crate::system::equations::{Origin, State, StateEquations};
+use super::speeds::of_kind;
+use super::{closing, friction};
+use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, partial, substitute};
+use crate::system::equations::{Kind, Origin, State, StateEquations};
 use bodies::{Body, velocity};
 use joints::Hinge;
 use motion::Velocities;
 
-/// Whether there is anything to look at: rows of rigid joints, and no others. Stops and dry friction are not told
-/// their mobilities yet.
+/// Whether there is anything to look at: rows of rigid joints.
 pub(super) fn may_apply(equations: &StateEquations) -> bool {
-    let rigid = friction::rigid(&equations.reactions);
-    equations.baumgarte.is_none() && rigid > 0 && rigid == equations.reactions.len()
+    equations.baumgarte.is_none() && friction::rigid(&equations.reactions) > 0
+}
+
+/// Whether it has been done.
+pub(super) fn is_put(equations: &StateEquations) -> bool {
+    equations.states.iter().any(|state| matches!(state.origin, Origin::Speed(_)))
 }
 
 /// Takes the bodies of a tree of hinges out of the equations; none where there are none, or something does not fit.
 pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option<()> {
     let bodies = bodies::of(equations);
+    let literal = Literal::of(equations);
     let spins = places_of_spins(&mut equations.pool, &bodies);
     equations.rewrite(&|pool, ids| exchange(pool, ids, &spins));
     let hinges = hinges(equations, &bodies)?;
     let of_bodies: BTreeSet<usize> = hinges.iter().flat_map(|hinge| bodies[hinge.child].states()).collect();
-    release(equations, &of_bodies)?;
+    release(equations, &hinges, &of_bodies)?;
+    literal.keep_mobilities(equations);
     let first = 6 * bodies.len() + joints::PROBES;
     let coordinates = motion::coordinates(&mut equations.pool, first, hinges.len());
     motion::recognise(equations, &bodies, &hinges, &coordinates);
@@ -49,7 +55,13 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     let rates = recursion::rates(&mut equations.pool, &links, &moved, &velocities.spins, &ground);
     let starts = motion::starts(equations, &bodies, &hinges);
     motion::energies(equations, &bodies, &links, &velocities);
-    let images = motion::images(&mut equations.pool, &bodies, &links, &moved, &velocities);
+    let mut images = motion::images(&mut equations.pool, &bodies, &links, &moved, &velocities);
+    for (index, body) in bodies.iter().enumerate() {
+        for (k, &spin) in body.spin.iter().enumerate() {
+            // Of a body on no hinge, which keeps its states.
+            images.entry(velocity(index, 3 + k)).or_insert(spin);
+        }
+    }
     let mut kept = vec![true; equations.states.len()];
     let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
     for (k, hinge) in hinges.iter().enumerate() {
@@ -85,21 +97,27 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     Some(())
 }
 
-/// The hinges of trees on the ground, parents first, where all rows are of such.
+/// The hinges of trees on the ground, parents first, where they do not all turn in the plane.
 fn hinges(equations: &mut StateEquations, bodies: &[Body]) -> Option<Vec<Hinge>> {
     let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
     let states = values_at_start(equations, &parameters);
     let starts = Environment { states: &states, parameters: &parameters, ..Environment::default() };
     let hinges = spanning(joints::of(equations, bodies, &starts));
-    let rows: usize = hinges.iter().map(|hinge| hinge.rows.len()).sum();
-    (!is_planar(&hinges) && rows == equations.reactions.len()).then_some(hinges)
+    (!is_planar(&hinges)).then_some(hinges)
 }
 
-/// Takes the reactions out of the rates of the momenta of these bodies, on whose motions they do not work; none where
-/// something else reads one.
-fn release(equations: &mut StateEquations, bodies: &BTreeSet<usize>) -> Option<()> {
-    let gone: BTreeSet<Symbol> = equations.reactions.iter().map(|reaction| reaction.multiplier).collect();
-    if is_read(equations, &gone, bodies) {
+/// Takes the reactions of hinges out of the equations; they do not work on the motions of these bodies. None where
+/// something beside their momenta reads one, or one of a loop, which the hinges may share.
+fn release(equations: &mut StateEquations, hinges: &[Hinge], bodies: &BTreeSet<usize>) -> Option<()> {
+    let rows: BTreeSet<usize> = hinges.iter().flat_map(|hinge| hinge.rows.iter().copied()).collect();
+    let rigid = friction::rigid(&equations.reactions);
+    let multiplier = |row: usize| equations.reactions[row].multiplier;
+    let gone: BTreeSet<Symbol> = rows.iter().map(|&row| multiplier(row)).collect();
+    let closing: BTreeSet<Symbol> = (0..rigid).filter(|row| !rows.contains(row)).map(multiplier).collect();
+    let unknown: BTreeSet<Symbol> =
+        if closing.len() > 1 { gone.union(&closing).copied().collect() } else { gone.clone() };
+    let outputs: Vec<Id> = equations.outputs.iter().map(|output| output.value).collect();
+    if is_read(equations, &gone, bodies) || has_any(&equations.pool, &outputs, &unknown) {
         return None;
     }
     let StateEquations { pool, states, shown, .. } = equations;
@@ -109,9 +127,37 @@ fn release(equations: &mut StateEquations, bodies: &BTreeSet<usize>) -> Option<(
     for (&state, rate) in bodies.iter().zip(rates) {
         states[state].rate = rate;
     }
-    shown.forget(pool, &gone);
-    equations.reactions.clear();
+    shown.forget(pool, &unknown);
+    equations.reactions.retain(|reaction| !gone.contains(&reaction.multiplier));
     Some(())
+}
+
+/// The flows of all rows and the rates of all momenta as momenta determine them.
+struct Literal {
+    flows: BTreeMap<Symbol, Id>,
+    rates: Vec<(usize, Id)>,
+}
+
+impl Literal {
+    fn of(equations: &StateEquations) -> Self {
+        let flows = equations.reactions.iter().map(|reaction| (reaction.multiplier, reaction.slip.flow)).collect();
+        let rates = of_kind(equations, Kind::Momentum).map(|state| (state, equations.states[state].rate)).collect();
+        Self { flows, rates }
+    }
+
+    /// Gives the rows that are left their mobilities by all momenta, where joints close loops.
+    fn keep_mobilities(&self, equations: &mut StateEquations) {
+        if friction::rigid(&equations.reactions) == 0 {
+            return;
+        }
+        let StateEquations { pool, reactions, .. } = equations;
+        for reaction in reactions {
+            let flow = self.flows[&reaction.multiplier];
+            let load = |&(state, rate): &(usize, Id)| (state, partial(pool, &[rate], reaction.multiplier)[0]);
+            let loads: Vec<(usize, Id)> = self.rates.iter().map(load).collect();
+            reaction.slip.mobility = Some(closing::mobility(pool, flow, &loads));
+        }
+    }
 }
 
 /// A symbol in the place of each angular velocity.
@@ -167,13 +213,17 @@ fn is_planar(hinges: &[Hinge]) -> bool {
 fn is_read(equations: &StateEquations, gone: &BTreeSet<Symbol>, bodies: &BTreeSet<usize>) -> bool {
     let others = equations.states.iter().enumerate().filter(|(state, _)| !bodies.contains(state));
     let rates = others.map(|(_, state)| state.rate);
-    let outputs = equations.outputs.iter().map(|output| output.value);
     let guards = equations.switches.iter().map(|switch| switch.guard);
     let powers = [equations.supplied, equations.dissipated, equations.stored];
     let loops = equations.iterations.iter().flat_map(|iteration| iteration.residuals.iter().copied());
     let laws = equations.fallible.iter().map(|law| law.value);
-    let all = rates.chain(outputs).chain(guards).chain(powers).chain(loops).chain(laws);
-    equations.pool.symbols(&all.collect::<Vec<_>>()).iter().any(|symbol| gone.contains(symbol))
+    let all = rates.chain(guards).chain(powers).chain(loops).chain(laws);
+    has_any(&equations.pool, &all.collect::<Vec<_>>(), gone)
+}
+
+/// Whether one of these symbols is read.
+fn has_any(pool: &Pool, ids: &[Id], symbols: &BTreeSet<Symbol>) -> bool {
+    !pool.symbols(ids).is_disjoint(symbols)
 }
 
 #[cfg(test)]
