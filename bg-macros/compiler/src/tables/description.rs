@@ -281,8 +281,8 @@ pub(crate) fn element_of(graph: &BondGraph, origin: Origin) -> &str {
         Origin::Position(track, _)
         | Origin::Orientation(track, ..)
         | Origin::Angle(track)
-        | Origin::Hinge(track)
-        | Origin::Speed(track) => graph.tracks[track].junction,
+        | Origin::Hinge(track, _)
+        | Origin::Speed(track, _) => graph.tracks[track].junction,
         Origin::Turn(_) | Origin::Integral(_) => return "",
     };
     &graph.node(node).name.text
@@ -295,8 +295,8 @@ const fn state_kind(origin: Origin) -> StateKind {
         Origin::Position(_, axis) => StateKind::Position(axis),
         Origin::Orientation(_, row, column) => StateKind::Orientation(row, column),
         Origin::Angle(_) => StateKind::Angle,
-        Origin::Speed(_) => StateKind::Momentum(0),
-        Origin::Turn(_) | Origin::Hinge(_) | Origin::Way(_) => StateKind::Way,
+        Origin::Speed(..) => StateKind::Momentum(0),
+        Origin::Turn(_) | Origin::Hinge(..) | Origin::Way(_) => StateKind::Way,
         Origin::Integral(_) => StateKind::Integral,
     }
 }

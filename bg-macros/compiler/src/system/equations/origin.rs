@@ -19,10 +19,10 @@ pub enum Origin {
     Angle(usize),
     /// The angle that counts turns; its index in the graph.
     Turn(usize),
-    /// The angle of a hinge; the track of the orientation that it gives.
-    Hinge(usize),
-    /// The speed of a hinge, in the place of a momentum; the track of the orientation that it turns.
-    Speed(usize),
+    /// The angle or the travel of a step of a joint; the track of the orientation that it gives, the step.
+    Hinge(usize, usize),
+    /// The speed of a step of a joint, in the place of a momentum; the track of the orientation that it turns, the step.
+    Speed(usize, usize),
     /// The displacement of a scalar 1-junction.
     Way(NodeId),
     /// The integral that an output asks for; its index.
@@ -47,12 +47,12 @@ impl Origin {
     #[must_use]
     pub fn kind(self) -> Kind {
         match self {
-            Self::Momentum(..) | Self::Speed(_) => Kind::Momentum,
+            Self::Momentum(..) | Self::Speed(..) => Kind::Momentum,
             Self::Displacement(..) => Kind::Displacement,
             Self::Position(..) => Kind::Position,
             Self::Orientation(..) => Kind::Orientation,
             Self::Angle(_) => Kind::Angle,
-            Self::Turn(_) | Self::Hinge(_) | Self::Way(_) => Kind::Way,
+            Self::Turn(_) | Self::Hinge(..) | Self::Way(_) => Kind::Way,
             Self::Integral(_) => Kind::Integral,
         }
     }

@@ -142,7 +142,7 @@ pub fn for_scene(
 /// Whether the hinges of `changed` are so many that the matrix of all reactions of `equations`, whose bodies keep all
 /// their states, takes seconds and more to factor.
 fn is_long(changed: &StateEquations, equations: &StateEquations) -> bool {
-    let hinges = changed.states.iter().filter(|state| matches!(state.origin, Origin::Hinge(_))).count();
+    let hinges = changed.states.iter().filter(|state| matches!(state.origin, Origin::Hinge(..))).count();
     hinges > SHORT && equations.states.len() >= KEPT * hinges
 }
 

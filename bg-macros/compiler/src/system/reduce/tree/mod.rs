@@ -1,10 +1,10 @@
-//! Bodies on hinges in joint coordinates.
+//! Bodies in joint coordinates.
 //!
-//! In: equations with bodies of eighteen states each and rigid joints, among them hinges of trees that stand on the
-//! ground. Out: the same with an angle and a speed for each hinge; poses and momenta of bodies are expressions of
-//! these. Method: with the motion of a hinge in place of that of a body the gaps and flows of its joint are zero
-//! identically (`joints`), so no motion is lost; its reactions work on none of these motions, so they occur in none of
-//! the rates. These are found from tip to ground and back (`recursion`). What else is held, by joints that close loops,
+//! In: equations with bodies of eighteen states each and rigid joints, among them such as form trees on the ground
+//! (`joints` has their kinds). Out: the same with an angle or a travel and its speed for each freedom of these; poses
+//! and momenta of bodies are expressions of these. Method: with the motion of a joint in place of that of a body its gaps
+//! and flows are zero identically (`recognition`), so no motion is lost; its reactions work on none of these motions, so
+//! they occur in none of the rates. These are found from tip to ground and back (`recursion`). What else is held, by joints that close loops,
 //! stops and dry friction, keeps its reactions, which are loads to the tree.
 
 mod bodies;
@@ -13,6 +13,7 @@ mod links;
 mod loads;
 mod motion;
 mod numbers;
+mod recognition;
 mod recursion;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,8 +24,9 @@ use super::{closing, friction};
 use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, partial, substitute};
 use crate::system::equations::{Kind, Origin, State, StateEquations};
 use bodies::{Body, velocity};
-use joints::Hinge;
-use motion::Velocities;
+use joints::{Freedom, Joint};
+use loads::{Loads, Tree};
+use motion::Motion;
 
 /// Whether there is anything to look at: rows of rigid joints.
 pub(super) fn may_apply(equations: &StateEquations) -> bool {
@@ -33,60 +35,65 @@ pub(super) fn may_apply(equations: &StateEquations) -> bool {
 
 /// Whether it has been done.
 pub(super) fn is_put(equations: &StateEquations) -> bool {
-    equations.states.iter().any(|state| matches!(state.origin, Origin::Speed(_)))
+    equations.states.iter().any(|state| matches!(state.origin, Origin::Speed(..)))
 }
 
-/// Takes the bodies of a tree of hinges out of the equations; none where there are none, or something does not fit.
+/// Takes the bodies of trees of joints out of the equations; none where there are none, or something does not fit.
 pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option<()> {
     let bodies = bodies::of(equations);
     let literal = Literal::of(equations);
     let spins = places_of_spins(&mut equations.pool, &bodies);
     equations.rewrite(&|pool, ids| exchange(pool, ids, &spins));
-    let hinges = hinges(equations, &bodies)?;
-    let of_bodies: BTreeSet<usize> = hinges.iter().flat_map(|hinge| bodies[hinge.child].states()).collect();
-    release(equations, &hinges, &of_bodies)?;
+    let joints = joints(equations, &bodies)?;
+    let of_bodies: BTreeSet<usize> = joints.iter().flat_map(|joint| bodies[joint.child].states()).collect();
+    release(equations, &joints, &of_bodies)?;
     literal.keep_mobilities(equations);
     let first = 6 * bodies.len() + joints::PROBES;
-    let coordinates = motion::coordinates(&mut equations.pool, first, hinges.len());
-    motion::recognise(equations, &bodies, &hinges, &coordinates);
-    let links = links::of(&mut equations.pool, &bodies, &hinges);
-    let (moved, ground) = loads::of(equations, &bodies, &links, &coordinates);
-    let velocities = Velocities::of(&mut equations.pool, &links, &moved);
-    let rates = recursion::rates(&mut equations.pool, &links, &moved, &velocities.spins, &ground);
-    let starts = motion::starts(equations, &bodies, &hinges);
-    motion::energies(equations, &bodies, &links, &velocities);
-    let mut images = motion::images(&mut equations.pool, &bodies, &links, &moved, &velocities);
+    let coordinates = motion::coordinates(&mut equations.pool, first, &joints);
+    motion::recognise(equations, &bodies, &joints, &coordinates);
+    let (links, seats) = links::of(&mut equations.pool, &bodies, &joints);
+    let tree = Tree { bodies: &bodies, joints: &joints, links: &links, seats: &seats };
+    let Loads { moved, axes, ground } = Loads::of(equations, &tree, &coordinates);
+    let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
+    let rates = recursion::rates(&mut equations.pool, &links, &moved, &motion.spins, &ground);
+    let starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
+    motion.energies(equations, &bodies, &seats);
+    let mut images = motion.images(&mut equations.pool, &bodies, &seats);
     for (index, body) in bodies.iter().enumerate() {
         for (k, &spin) in body.spin.iter().enumerate() {
-            // Of a body on no hinge, which keeps its states.
+            // Of a body on no such joint, which keeps its states.
             images.entry(velocity(index, 3 + k)).or_insert(spin);
         }
     }
     let mut kept = vec![true; equations.states.len()];
-    let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
-    for (k, hinge) in hinges.iter().enumerate() {
-        let body = &bodies[hinge.child];
-        for state in body.states() {
+    for joint in &joints {
+        for state in bodies[joint.child].states() {
             kept[state] = false;
-            report.say(state, Fate::Joined(hinge.name.clone()));
+            report.say(state, Fate::Joined(joint.name.clone()));
         }
+    }
+    let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
+    for (link, (own, &rate)) in links.iter().zip(moved.iter().zip(&rates)) {
+        let (number, step) = link.step;
+        let body = &bodies[joints[number].child];
         let Origin::Orientation(track, ..) = equations.states[body.axes[0]].origin else { return None };
-        let [angle, speed] = [Origin::Hinge(track), Origin::Speed(track)];
-        let new = |letter: char, unit: &str, origin, start, rate| State {
-            name: format!("{}.{letter}", hinge.name),
-            unit: unit.to_owned(),
-            origin,
-            start,
-            rate,
+        let [place, speed] = starts[number][step];
+        let names = names(&joints[number], step);
+        let units = match link.freedom {
+            Freedom::Turn => ["rad", "rad/s"],
+            Freedom::Slide => ["m", "m/s"],
         };
-        let angle = new('q', "rad", angle, starts[k][0], coordinates[k].speed);
-        let speed = new('u', "rad/s", speed, starts[k][1], rates[k]);
-        for (side, (state, new)) in [(body.axes[0], angle), (body.angular[0], speed)].into_iter().enumerate() {
+        let origins = [Origin::Hinge(track, step), Origin::Speed(track, step)];
+        let slots = [body.place[step], body.linear[step]];
+        for (side, (start, rate)) in [(place, own.moves.speed), (speed, rate)].into_iter().enumerate() {
+            let (state, name, unit) = (slots[side], names[side].clone(), units[side].to_owned());
+            let new = State { name, unit, origin: origins[side], start, rate };
             kept[state] = true;
             report.rename(state, new.clone());
             report.say(state, Fate::Integrated);
             equations.states[state] = new;
-            let symbol = Symbol::numbered(Symbol::Weight, first + 2 * k + side);
+            let coordinate = [own.moves.place, own.moves.speed][side];
+            let Node::Symbol(symbol) = *equations.pool.node(coordinate) else { return None };
             places.insert(symbol, equations.pool.symbol(Symbol::state(state)));
         }
     }
@@ -97,19 +104,25 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     Some(())
 }
 
-/// The hinges of trees on the ground, parents first, where they do not all turn in the plane.
-fn hinges(equations: &mut StateEquations, bodies: &[Body]) -> Option<Vec<Hinge>> {
+/// The names of a step's place and speed: with a number where a joint has several.
+fn names(joint: &Joint, step: usize) -> [String; 2] {
+    let number = if joint.steps().len() > 1 { (step + 1).to_string() } else { String::new() };
+    ["q", "u"].map(|letter| format!("{}.{letter}{number}", joint.name))
+}
+
+/// The joints of trees on the ground, parents first, where they do not all turn in the plane.
+fn joints(equations: &mut StateEquations, bodies: &[Body]) -> Option<Vec<Joint>> {
     let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
     let states = values_at_start(equations, &parameters);
     let starts = Environment { states: &states, parameters: &parameters, ..Environment::default() };
-    let hinges = spanning(joints::of(equations, bodies, &starts));
-    (!is_planar(&hinges)).then_some(hinges)
+    let joints = recognition::of(equations, bodies, &starts);
+    (!is_planar(&joints)).then_some(joints)
 }
 
-/// Takes the reactions of hinges out of the equations; they do not work on the motions of these bodies. None where
-/// something beside their momenta reads one, or one of a loop, which the hinges may share.
-fn release(equations: &mut StateEquations, hinges: &[Hinge], bodies: &BTreeSet<usize>) -> Option<()> {
-    let rows: BTreeSet<usize> = hinges.iter().flat_map(|hinge| hinge.rows.iter().copied()).collect();
+/// Takes the reactions of joints out of the equations; they do not work on the motions of these bodies. None where
+/// something beside their momenta reads one, or one of a loop, which the joints may share.
+fn release(equations: &mut StateEquations, joints: &[Joint], bodies: &BTreeSet<usize>) -> Option<()> {
+    let rows: BTreeSet<usize> = joints.iter().flat_map(|joint| joint.rows.iter().copied()).collect();
     let rigid = friction::rigid(&equations.reactions);
     let multiplier = |row: usize| equations.reactions[row].multiplier;
     let gone: BTreeSet<Symbol> = rows.iter().map(|&row| multiplier(row)).collect();
@@ -187,26 +200,16 @@ fn values_at_start(equations: &StateEquations, parameters: &[f64]) -> Vec<f64> {
     evaluate(&equations.pool, &starts, &Environment { unknowns: &unknowns, ..given })
 }
 
-/// Hinges that carry bodies from the ground on, parents first.
-fn spanning(hinges: Vec<Hinge>) -> Vec<Hinge> {
-    let mut tree: Vec<Hinge> = Vec::new();
-    let mut left = hinges;
-    loop {
-        let has = |body: usize| tree.iter().any(|hinge| hinge.child == body);
-        let is_next = |hinge: &Hinge| match hinge.parent {
-            None => !has(hinge.child),
-            Some(parent) => has(parent) != has(hinge.child),
+/// Whether all joints move in the x-y plane, in which bodies' own momenta take fewer operations.
+fn is_planar(joints: &[Joint]) -> bool {
+    joints.iter().all(|joint| {
+        let third = |frame: &numbers::Matrix| numbers::column(frame, 2)[2].abs();
+        let is_along = |freedom| match freedom {
+            Freedom::Turn => joint.frames.iter().all(|frame| third(frame) == 1.0),
+            Freedom::Slide => joint.frames.iter().all(|frame| third(frame) == 0.0),
         };
-        let Some(place) = left.iter().position(is_next) else { return tree };
-        let hinge = left.remove(place);
-        let is_backwards = hinge.parent.is_some_and(|parent| !has(parent));
-        tree.push(if is_backwards { hinge.reversed() } else { hinge });
-    }
-}
-
-/// Whether all hinges turn in the x-y plane, in which bodies' own momenta take fewer operations.
-fn is_planar(hinges: &[Hinge]) -> bool {
-    hinges.iter().all(|hinge| hinge.frames.iter().all(|frame| numbers::column(frame, 2)[2].abs() == 1.0))
+        joint.steps().iter().all(|step| is_along(step.freedom))
+    })
 }
 
 /// Whether something beside the momenta of these bodies reads a reaction that goes.

@@ -1,38 +1,43 @@
-//! Poses, velocities and energies of bodies by the coordinates of hinges.
+//! Poses, velocities and energies of bodies by the coordinates of joints.
 //!
 //! In: bodies, links. Out: an expression for each state and velocity of a body; what reads two bodies by their relative
-//! motion alone written by the hinge between them. Method of the latter: such a node is the same whatever the pose and
+//! motion alone written by the joint between them. Method of the latter: such a node is the same whatever the pose and
 //! the motion of the parent are; it is proved for a rotation of four symbols, by the polynomial identity.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, symbols, velocity};
-use super::joints::{Hinge, Probe};
-use super::links::Link;
+use super::joints::{Freedom, Joint, Kind, Moves, Probe};
+use super::links::{Link, Seat};
 use super::numbers;
 use super::recursion::{Moved, down, spins};
 use crate::expr::{Function, Id, Node, Pool, Symbol, children, exchange, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
 
-/// The angle of a hinge and its speed, as symbols of no state yet.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Coordinate {
-    pub angle: Id,
-    pub speed: Id,
-}
-
-/// Symbols for as many hinges, from this number on.
-pub(super) fn coordinates(pool: &mut Pool, first: usize, count: usize) -> Vec<Coordinate> {
-    let mut symbol = |k: usize| pool.symbol(Symbol::numbered(Symbol::Weight, first + k));
-    (0..count).map(|k| Coordinate { angle: symbol(2 * k), speed: symbol(2 * k + 1) }).collect()
+/// The coordinates of the steps of all joints, from this symbol on: two for each step.
+pub(super) fn coordinates(pool: &mut Pool, first: usize, joints: &[Joint]) -> Vec<Vec<Moves>> {
+    let mut number = first;
+    let mut symbol = |pool: &mut Pool| {
+        number += 1;
+        pool.symbol(Symbol::numbered(Symbol::Weight, number - 1))
+    };
+    let mut moves = |pool: &mut Pool, freedom: Freedom| {
+        let [place, speed] = [symbol(pool), symbol(pool)];
+        let [cosine, sine] = match freedom {
+            Freedom::Turn => [Function::Cos, Function::Sin].map(|of| pool.call(of, &[place])),
+            Freedom::Slide => [pool.one(), pool.zero()],
+        };
+        Moves { place, cosine, sine, speed }
+    };
+    joints.iter().map(|joint| joint.steps().iter().map(|step| moves(pool, step.freedom)).collect()).collect()
 }
 
 /// The bodies that a node reads; none where it reads something else or many.
 type Reads = Option<BTreeSet<usize>>;
 
-/// Writes what reads two bodies by their relative motion alone by the hinge between them.
-pub(super) fn recognise(equations: &mut StateEquations, bodies: &[Body], hinges: &[Hinge], coordinates: &[Coordinate]) {
+/// Writes what reads two bodies by their relative motion alone by the joint between them.
+pub(super) fn recognise(equations: &mut StateEquations, bodies: &[Body], joints: &[Joint], coordinates: &[Vec<Moves>]) {
     let mut owner: BTreeMap<Symbol, usize> = BTreeMap::new();
     for (index, body) in bodies.iter().enumerate() {
         owner.extend((0..6).map(|k| (velocity(index, k), index)));
@@ -60,14 +65,14 @@ pub(super) fn recognise(equations: &mut StateEquations, bodies: &[Body], hinges:
             reads.insert(id, own);
         }
         let mut places = BTreeMap::new();
-        for (hinge, own) in hinges.iter().zip(coordinates) {
-            let Some(parent) = hinge.parent else { continue };
-            let Some(nodes) = found.get(&BTreeSet::from([parent, hinge.child])) else { continue };
+        for (joint, own) in joints.iter().zip(coordinates) {
+            let Some(parent) = joint.parent else { continue };
+            let Some(nodes) = found.get(&BTreeSet::from([parent, joint.child])) else { continue };
             let probe = Probe::new(pool, 6 * bodies.len());
             let rotation = probe.rotation.clone();
             let unit = Value::identity(pool);
-            let anyhow = hinge.motion(pool, bodies, &probe, Some(&rotation));
-            let mut still = hinge.motion(pool, bodies, &probe, Some(&unit));
+            let anyhow = joint.motion(pool, bodies, &probe.moves, Some(&rotation));
+            let mut still = joint.motion(pool, bodies, &probe.moves, Some(&unit));
             let zero = pool.zero();
             let at_rest = bodies[parent].place.iter().map(|&state| Symbol::state(state));
             let at_rest: Vec<Symbol> = at_rest.chain((0..6).map(|k| velocity(parent, k))).collect();
@@ -75,12 +80,10 @@ pub(super) fn recognise(equations: &mut StateEquations, bodies: &[Body], hinges:
                 *image = substitute(pool, &[*image], &|symbol| at_rest.contains(&symbol).then_some(zero))[0];
             }
             still.extend(at_rest.iter().map(|&symbol| (symbol, zero)));
-            let [cosine, sine] = [Function::Cos, Function::Sin].map(|of| pool.call(of, &[own.angle]));
-            let by = |symbol: Symbol| match symbol {
-                _ if symbol == probe.cosine => Some(cosine),
-                _ if symbol == probe.sine => Some(sine),
-                _ if symbol == probe.rate => Some(own.speed),
-                _ => None,
+            let by = |symbol: Symbol| {
+                let (moves, symbols) = own.iter().zip(&probe.symbols).find(|(_, of)| of.contains(&symbol))?;
+                let ids = [moves.place, moves.cosine, moves.sine, moves.speed];
+                symbols.iter().position(|&other| other == symbol).map(|k| ids[k])
             };
             for &node in nodes {
                 let simple = substitute(pool, &[node], &|symbol| still.get(&symbol).copied())[0];
@@ -95,7 +98,7 @@ pub(super) fn recognise(equations: &mut StateEquations, bodies: &[Body], hinges:
 }
 
 /// The axes of a link in inertial axes, from those of the links before it.
-pub(super) fn axes(pool: &mut Pool, links: &[Link], before: &[Value], index: usize, own: &Moved) -> Value {
+pub(super) fn axes(pool: &mut Pool, links: &[Link], before: &[Value], index: usize, own: &Moves) -> Value {
     let link = &links[index];
     let minus = pool.neg(own.sine);
     let (zero, one) = (pool.zero(), pool.one());
@@ -107,141 +110,162 @@ pub(super) fn axes(pool: &mut Pool, links: &[Link], before: &[Value], index: usi
     fixed.multiply(pool, &turn)
 }
 
-/// Each state and velocity of the bodies.
-pub(super) fn images(
-    pool: &mut Pool,
-    bodies: &[Body],
-    links: &[Link],
-    moved: &[Moved],
-    Velocities { spins, centres }: &Velocities,
-) -> BTreeMap<Symbol, Id> {
-    let mut images = BTreeMap::new();
-    let mut all: Vec<Value> = Vec::new();
-    let mut origins: Vec<Value> = Vec::new();
-    for (k, link) in links.iter().enumerate() {
-        let own = axes(pool, links, &all, k, &moved[k]);
-        let origin = match link.parent {
-            Some(parent) => {
-                let offset = all[parent].multiply(pool, &link.offset);
-                origins[parent].add(pool, &offset)
-            }
-            None => link.offset.clone(),
-        };
-        let centre = own.multiply(pool, &link.centre);
-        let place = origin.add(pool, &centre);
-        let turned = own.multiply(pool, &link.axes.transpose());
-        let velocity_there = own.multiply(pool, &centres[k]);
-        let momentum = velocity_there.multiply(pool, &Value::scalar(link.mass));
-        let spin = own.multiply(pool, &spins[k]);
-        let inside = link.central.multiply(pool, &spins[k]);
-        let angular = own.multiply(pool, &inside);
-        let index = link.hinge.child;
-        let body = &bodies[index];
-        for (states, values) in [
-            (&body.place[..], &place),
-            (&body.axes[..], &turned),
-            (&body.linear[..], &momentum),
-            (&body.angular[..], &angular),
-        ] {
-            images.extend(states.iter().map(|&state| Symbol::state(state)).zip(values.0.iter().copied()));
-        }
-        let motion = velocity_there.0.iter().chain(&spin.0).copied();
-        images.extend((0..6).map(|k| velocity(index, k)).zip(motion));
-        all.push(own);
-        origins.push(origin);
-    }
-    images
-}
-
-/// How links move, in their axes.
-pub(super) struct Velocities {
-    /// The angular velocities.
+/// Where links and bodies are and how they move.
+pub(super) struct Motion {
+    /// The axes of the links in inertial axes.
+    axes: Vec<Value>,
+    /// The origins of the links.
+    origins: Vec<Value>,
+    /// The angular velocities of the links, in their axes.
     pub spins: Vec<Value>,
-    /// The velocities of the centres of mass.
-    pub centres: Vec<Value>,
+    /// The velocities of the bodies' centres of mass, in the axes of their links; in the order of the seats.
+    centres: Vec<Value>,
 }
 
-impl Velocities {
-    pub fn of(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Self {
+impl Motion {
+    pub fn of(pool: &mut Pool, links: &[Link], seats: &[Seat], moved: &[Moved], axes: Vec<Value>) -> Self {
         let spins = spins(pool, links, moved);
-        let mut origins: Vec<Value> = Vec::new();
-        let mut centres = Vec::new();
+        let (mut origins, mut velocities): (Vec<Value>, Vec<Value>) = (Vec::new(), Vec::new());
         for (k, link) in links.iter().enumerate() {
-            let origin = match link.parent {
+            let offset = &moved[k].offset;
+            let (origin, there) = match link.parent {
                 Some(parent) => {
-                    let beside = spins[parent].cross(pool, &link.offset);
-                    let there = origins[parent].add(pool, &beside);
-                    down(pool, link, &moved[k], &there)
+                    let by = axes[parent].multiply(pool, offset);
+                    let beside = spins[parent].cross(pool, offset);
+                    let there = velocities[parent].add(pool, &beside);
+                    (origins[parent].add(pool, &by), down(pool, link, &moved[k], &there))
                 }
-                None => Value::zero(pool, 3),
+                None => (offset.clone(), Value::zero(pool, 3)),
             };
-            let beside = spins[k].cross(pool, &link.centre);
-            centres.push(origin.add(pool, &beside));
+            let mut there = there;
+            if link.freedom == Freedom::Slide {
+                there.0[2] = pool.add(there.0[2], moved[k].moves.speed);
+            }
             origins.push(origin);
+            velocities.push(there);
         }
-        Self { spins, centres }
+        let centre = |pool: &mut Pool, seat: &Seat| match seat.link {
+            Some(link) => {
+                let beside = spins[link].cross(pool, &seat.centre);
+                velocities[link].add(pool, &beside)
+            }
+            None => Value::zero(pool, 3),
+        };
+        let centres = seats.iter().map(|seat| centre(pool, seat)).collect();
+        Self { axes, origins, spins, centres }
     }
-}
 
-/// Writes the kinetic energies in the links' axes.
-pub(super) fn energies(
-    equations: &mut StateEquations,
-    bodies: &[Body],
-    links: &[Link],
-    Velocities { spins, centres }: &Velocities,
-) {
-    let pool = &mut equations.pool;
-    for (k, link) in links.iter().enumerate() {
-        let body = &bodies[link.hinge.child];
-        let fast = centres[k].dot(pool, &centres[k]);
-        let fast = pool.mul(fast, link.mass);
-        let inside = link.central.multiply(pool, &spins[k]);
-        let turning = spins[k].dot(pool, &inside);
-        let momentum = symbols(pool, &body.linear);
-        let square = momentum.dot(pool, &momentum);
-        let by_momentum = pool.div(square, body.mass);
-        let (axes, angular) = (symbols(pool, &body.axes), symbols(pool, &body.angular));
-        let own = axes.transpose().multiply(pool, &angular);
-        let mobile = body.mobility.multiply(pool, &own);
-        let by_angular = own.dot(pool, &mobile);
-        for (states, old, new) in [(&body.linear[..], by_momentum, fast), (&body.angular[..], by_angular, turning)] {
-            let [old, new] = [old, new].map(|id| pool.scale(0.5, id));
-            for energy in &mut equations.energies {
-                let reads = pool.symbols(&[*energy]);
-                if states.iter().any(|&state| reads.contains(&Symbol::state(state)))
-                    && same_polynomial(pool, *energy, old)
-                {
-                    *energy = new;
+    /// Each state and velocity of the bodies.
+    pub fn images(&self, pool: &mut Pool, bodies: &[Body], seats: &[Seat]) -> BTreeMap<Symbol, Id> {
+        let mut images = BTreeMap::new();
+        for (seat, centre) in seats.iter().zip(&self.centres) {
+            let (own, origin, spin) = match seat.link {
+                Some(link) => (self.axes[link].clone(), self.origins[link].clone(), self.spins[link].clone()),
+                None => (Value::identity(pool), Value::zero(pool, 3), Value::zero(pool, 3)),
+            };
+            let body = &bodies[seat.body];
+            let there = own.multiply(pool, &seat.centre);
+            let place = origin.add(pool, &there);
+            let turned = own.multiply(pool, &seat.axes.transpose());
+            let fast = own.multiply(pool, centre);
+            let momentum = fast.multiply(pool, &Value::scalar(body.mass));
+            let inside = seat.central.multiply(pool, &spin);
+            let angular = own.multiply(pool, &inside);
+            let spin = own.multiply(pool, &spin);
+            for (states, values) in [
+                (&body.place[..], &place),
+                (&body.axes[..], &turned),
+                (&body.linear[..], &momentum),
+                (&body.angular[..], &angular),
+            ] {
+                images.extend(states.iter().map(|&state| Symbol::state(state)).zip(values.0.iter().copied()));
+            }
+            let motion = fast.0.iter().chain(&spin.0).copied();
+            images.extend((0..6).map(|k| velocity(seat.body, k)).zip(motion));
+        }
+        images
+    }
+
+    /// Writes the kinetic energies in the links' axes.
+    pub fn energies(&self, equations: &mut StateEquations, bodies: &[Body], seats: &[Seat]) {
+        let pool = &mut equations.pool;
+        for (seat, centre) in seats.iter().zip(&self.centres) {
+            let Some(link) = seat.link else { continue };
+            let body = &bodies[seat.body];
+            let spin = &self.spins[link];
+            let fast = centre.dot(pool, centre);
+            let fast = pool.mul(fast, body.mass);
+            let inside = seat.central.multiply(pool, spin);
+            let turning = spin.dot(pool, &inside);
+            let momentum = symbols(pool, &body.linear);
+            let square = momentum.dot(pool, &momentum);
+            let by_momentum = pool.div(square, body.mass);
+            let (axes, angular) = (symbols(pool, &body.axes), symbols(pool, &body.angular));
+            let own = axes.transpose().multiply(pool, &angular);
+            let mobile = body.mobility.multiply(pool, &own);
+            let by_angular = own.dot(pool, &mobile);
+            for (states, old, new) in [(&body.linear[..], by_momentum, fast), (&body.angular[..], by_angular, turning)]
+            {
+                let [old, new] = [old, new].map(|id| pool.scale(0.5, id));
+                for energy in &mut equations.energies {
+                    let reads = pool.symbols(&[*energy]);
+                    if states.iter().any(|&state| reads.contains(&Symbol::state(state)))
+                        && same_polynomial(pool, *energy, old)
+                    {
+                        *energy = new;
+                    }
                 }
             }
         }
     }
 }
 
-/// The angle and the speed of each hinge at the start.
-pub(super) fn starts(equations: &mut StateEquations, bodies: &[Body], hinges: &[Hinge]) -> Vec<[Id; 2]> {
+/// The place and the speed of each step of a joint at the start.
+pub(super) fn starts(equations: &mut StateEquations, bodies: &[Body], joint: &Joint) -> Vec<[Id; 2]> {
     let StateEquations { pool, states, .. } = equations;
     let at_start = |pool: &mut Pool, ids: &[Id]| {
         Value(substitute(pool, ids, &|symbol| symbol.as_state().map(|state| states[state].start)))
     };
-    let mut starts = Vec::new();
-    for hinge in hinges {
-        let of = |pool: &mut Pool, body: Option<usize>| match body {
-            Some(body) => {
-                let axes = Value(bodies[body].axes.iter().map(|&state| states[state].start).collect());
-                (axes, at_start(pool, &bodies[body].spin))
-            }
-            None => (Value::identity(pool), Value::zero(pool, 3)),
-        };
-        let ((parent, before), (child, spin)) = (of(pool, hinge.parent), of(pool, Some(hinge.child)));
-        let frames = hinge.frames.map(|frame| numbers::matrix(pool, &frame));
-        let parent = parent.multiply(pool, &frames[0]);
-        let relative = parent.transpose().multiply(pool, &child).multiply(pool, &frames[1]);
-        let angle = pool.call(Function::Atan2, &[relative.0[3], relative.0[0]]);
-        let before = before.negate(pool);
-        let relative = spin.add(pool, &before);
-        let axis = Value(vec![parent.0[2], parent.0[5], parent.0[8]]);
-        starts.push([angle, axis.dot(pool, &relative)]);
+    let of = |of: &[usize]| Value(of.iter().map(|&state| states[state].start).collect());
+    let end = |pool: &mut Pool, body: Option<usize>| match body {
+        Some(body) => {
+            let body = &bodies[body];
+            let speed = of(&body.linear).divide(pool, body.mass);
+            [of(&body.axes), at_start(pool, &body.spin), of(&body.place), speed]
+        }
+        None => [Value::identity(pool), Value::zero(pool, 3), Value::zero(pool, 3), Value::zero(pool, 3)],
+    };
+    let ([parent, before, from, carried], [child, spin, to, moved]) =
+        (end(pool, joint.parent), end(pool, Some(joint.child)));
+    let [own_parent, own_child] = joint.frames.map(|frame| numbers::matrix(pool, &frame));
+    let [first, second] = [parent.multiply(pool, &own_parent), child.multiply(pool, &own_child)];
+    let apart = |pool: &mut Pool, a: &Value, b: &Value| {
+        let back = b.negate(pool);
+        a.add(pool, &back)
+    };
+    let turned = first.transpose().multiply(pool, &second).0;
+    let turning = apart(pool, &spin, &before);
+    let third = |of: &Value| Value(numbers::column(&of.0.clone().try_into().expect("nine entries"), 2).to_vec());
+    let (axis, last) = (third(&first), third(&second));
+    let turn = |pool: &mut Pool, sine: usize, cosine: usize, axis: &Value| {
+        let angle = pool.call(Function::Atan2, &[turned[sine], turned[cosine]]);
+        [angle, axis.dot(pool, &turning)]
+    };
+    let slide = |pool: &mut Pool| {
+        let [arm, there] = [parent.multiply(pool, &joint.at[0]), child.multiply(pool, &joint.at[1])];
+        let to = to.add(pool, &there);
+        let reach = apart(pool, &to, &from);
+        let gap = apart(pool, &reach, &arm);
+        let [spun, carrying] = [spin.cross(pool, &there), before.cross(pool, &reach)];
+        let [fast, still] = [moved.add(pool, &spun), carried.add(pool, &carrying)];
+        let relative = apart(pool, &fast, &still);
+        [axis.dot(pool, &gap), axis.dot(pool, &relative)]
+    };
+    match joint.kind {
+        Kind::Revolute => vec![turn(pool, 3, 0, &axis)],
+        Kind::Prismatic => vec![slide(pool)],
+        Kind::Cylindrical => vec![slide(pool), turn(pool, 3, 0, &axis)],
+        Kind::Universal => vec![turn(pool, 5, 2, &axis), turn(pool, 6, 7, &last)],
+        Kind::Fixed => Vec::new(),
     }
-    starts
 }

@@ -30,7 +30,7 @@ pub(super) fn unit(a: &Vector) -> Option<Vector> {
     (norm > 1e-3).then(|| a.map(|part| part / norm))
 }
 
-pub(super) fn are_near(a: &Vector, b: &Vector) -> bool {
+pub(super) fn are_near(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING)
 }
 
@@ -39,7 +39,7 @@ pub(super) fn cleaned<const N: usize>(of: &[f64; N]) -> [f64; N] {
     of.map(|part| if (part - part.round()).abs() < ROUNDING { part.round() + 0.0 } else { part })
 }
 
-pub(super) fn column(of: &Matrix, column: usize) -> Vector {
+pub(super) fn column<T: Copy>(of: &[T; 9], column: usize) -> [T; 3] {
     [of[column], of[3 + column], of[6 + column]]
 }
 

@@ -1,10 +1,11 @@
-//! The accelerations of a tree of hinges.
+//! The accelerations of a tree of links.
 //!
-//! In: links with sines and cosines, speeds, loads on each. Out: the rate of each speed. Method: articulated bodies
+//! In: links with their moves, loads on each. Out: the rate of each speed. Method: articulated bodies
 //! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7), in the axes of each link. Accelerations are those
 //! of the links' origins, so that no velocity of a point is needed; what turning does is linear in the six products of
 //! an angular velocity's components. Gravity is an acceleration of the ground.
 
+use super::joints::{Freedom, Moves};
 use super::links::Link;
 use crate::expr::{Id, Pool};
 use crate::system::Value;
@@ -12,13 +13,26 @@ use crate::system::Value;
 /// What moves a link.
 #[derive(Clone, Debug)]
 pub(super) struct Moved {
-    pub cosine: Id,
-    pub sine: Id,
-    pub speed: Id,
-    /// The torque about its hinge.
-    pub torque: Id,
+    pub moves: Moves,
+    /// Its origin, from its parent's, in the parent's axes.
+    pub offset: Value,
+    /// The torque about its hinge, or the force along its slide.
+    pub effort: Id,
     /// Moment about its origin and force, in its axes.
     pub load: [Value; 2],
+}
+
+impl Moved {
+    /// What moves a link without a load.
+    pub fn new(pool: &mut Pool, link: &Link, moves: Moves) -> Self {
+        let (zero, still) = (pool.zero(), Value::zero(pool, 3));
+        let mut offset = link.offset.clone();
+        if link.freedom == Freedom::Slide {
+            let by = link.fixed.multiply(pool, &Value(vec![zero, zero, moves.place]));
+            offset = offset.add(pool, &by);
+        }
+        Self { moves, offset, effort: zero, load: [still.clone(), still] }
+    }
 }
 
 /// A moment is J a + H b + n, a force H^T a + M b + f, by the angular acceleration a and the acceleration b.
@@ -36,7 +50,7 @@ struct Hinged {
     /// By how much the speed's rate falls with the parent's accelerations.
     by: [Value; 2],
     rate: Id,
-    /// Its angular acceleration beside its parent's and its speed's rate.
+    /// Its angular acceleration beside its parent's and what its speed's rate gives.
     turning: Value,
 }
 
@@ -48,7 +62,9 @@ pub(super) fn spins(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Vec<Val
             Some(parent) => down(pool, link, own, &spins[parent]),
             None => Value::zero(pool, 3),
         };
-        spin.0[2] = pool.add(spin.0[2], own.speed);
+        if link.freedom == Freedom::Turn {
+            spin.0[2] = pool.add(spin.0[2], own.moves.speed);
+        }
         spins.push(spin);
     }
     spins
@@ -61,18 +77,12 @@ pub(super) fn rates(pool: &mut Pool, links: &[Link], moved: &[Moved], spins: &[V
     for (k, link) in links.iter().enumerate() {
         bodies.push(rigid(pool, link, &moved[k], &squares[k]));
     }
-    // How each link's origin is accelerated by the turning of its parent.
-    let pulls: Vec<Value> = links
-        .iter()
-        .map(|link| match link.parent {
-            Some(parent) => squares[parent].multiply(pool, &link.offset),
-            None => Value::zero(pool, 3),
-        })
-        .collect();
+    let pulls: Vec<Value> =
+        links.iter().zip(moved).map(|(link, own)| pull(pool, link, own, (&squares, spins))).collect();
     let mut hinged: Vec<Option<Hinged>> = vec![None; links.len()];
     for k in (0..links.len()).rev() {
         let (link, own) = (&links[k], &moved[k]);
-        let (known, left) = release(pool, &bodies[k], own, &spins[k]);
+        let (known, left) = release(pool, link.freedom, &bodies[k], own, &spins[k]);
         hinged[k] = Some(known);
         if let Some(parent) = link.parent {
             let carried = carried(pool, link, own, left, &pulls[k]);
@@ -86,17 +96,32 @@ pub(super) fn rates(pool: &mut Pool, links: &[Link], moved: &[Moved], spins: &[V
         let known = hinged[k].clone().expect("every link is gone through");
         let still = [Value::zero(pool, 3), ground.clone()];
         let [turning, there] = link.parent.map_or(still, |parent| accelerations[parent].clone());
-        let beside = turning.cross(pool, &link.offset);
+        let beside = turning.cross(pool, &moved[k].offset);
         let there = there.add(pool, &beside).add(pool, &pulls[k]);
         let mut turning = down(pool, link, &moved[k], &turning).add(pool, &known.turning);
-        let there = down(pool, link, &moved[k], &there);
+        let mut there = down(pool, link, &moved[k], &there);
         let parts = [known.by[0].dot(pool, &turning), known.by[1].dot(pool, &there)];
         let rate = pool.linear(0.0, &[(known.rate, 1.0), (parts[0], -1.0), (parts[1], -1.0)]);
-        turning.0[2] = pool.add(turning.0[2], rate);
+        let along = if link.freedom == Freedom::Turn { &mut turning } else { &mut there };
+        along.0[2] = pool.add(along.0[2], rate);
         rates.push(rate);
         accelerations.push([turning, there]);
     }
     rates
+}
+
+/// How a link's origin is accelerated by the turning of its parent and its own sliding.
+fn pull(pool: &mut Pool, link: &Link, own: &Moved, (squares, spins): (&[Value], &[Value])) -> Value {
+    let Some(parent) = link.parent else { return Value::zero(pool, 3) };
+    let pull = squares[parent].multiply(pool, &own.offset);
+    if link.freedom == Freedom::Turn {
+        return pull;
+    }
+    let zero = pool.zero();
+    let twice = pool.scale(2.0, own.moves.speed);
+    let sliding = link.fixed.multiply(pool, &Value(vec![zero, zero, twice]));
+    let beside = spins[parent].cross(pool, &sliding);
+    pull.add(pool, &beside)
 }
 
 impl Articulated {
@@ -159,15 +184,20 @@ fn gyroscopic(pool: &mut Pool, about: &Value, square: &Value) -> Value {
     )
 }
 
-/// A link seen through its hinge.
-fn release(pool: &mut Pool, body: &Articulated, own: &Moved, spin: &Value) -> (Hinged, Articulated) {
+/// A link seen through its freedom.
+fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, spin: &Value) -> (Hinged, Articulated) {
     let [turning, coupling, pushing] = &body.inertia;
     let zero = pool.zero();
-    let column = Value(vec![turning.0[2], turning.0[5], turning.0[8]]);
-    let row = Value(coupling.0[6..].to_vec());
-    let inverse = pool.powi(turning.0[8], -1);
+    // Moment and force by its speed's rate.
+    let third = |of: &Value| Value(vec![of.0[2], of.0[5], of.0[8]]);
+    let (column, row, pivot) = match freedom {
+        Freedom::Turn => (third(turning), Value(coupling.0[6..].to_vec()), turning.0[8]),
+        Freedom::Slide => (third(coupling), third(pushing), pushing.0[8]),
+    };
+    let inverse = pool.powi(pivot, -1);
     let by = [column.multiply(pool, &Value::scalar(inverse)), row.multiply(pool, &Value::scalar(inverse))];
-    let drive = pool.sub(own.torque, body.bias[0].0[2]);
+    let known = if freedom == Freedom::Turn { 0 } else { 1 };
+    let drive = pool.sub(own.effort, body.bias[known].0[2]);
     let rate = pool.mul(drive, inverse);
     let less = |pool: &mut Pool, of: &Value, a: &Value, b: &Value| {
         let product = a.outer(pool, b).negate(pool);
@@ -180,15 +210,25 @@ fn release(pool: &mut Pool, body: &Articulated, own: &Moved, spin: &Value) -> (H
     ];
     left[0] = super::links::symmetric(&left[0]);
     left[2] = super::links::symmetric(&left[2]);
+    // What the freedom takes no effort along.
+    let (own_block, of_coupling) = match freedom {
+        Freedom::Turn => (0, [6, 7, 8]),
+        Freedom::Slide => (2, [2, 5, 8]),
+    };
     for k in [2, 5, 6, 7, 8] {
-        left[0].0[k] = zero;
+        left[own_block].0[k] = zero;
     }
-    for k in 6..9 {
+    for k in of_coupling {
         left[1].0[k] = zero;
     }
     // w x z times the hinge's speed.
-    let (x, y) = (pool.mul(spin.0[1], own.speed), pool.mul(spin.0[0], own.speed));
-    let own_turning = Value(vec![x, pool.neg(y), zero]);
+    let own_turning = match freedom {
+        Freedom::Turn => {
+            let (x, y) = (pool.mul(spin.0[1], own.moves.speed), pool.mul(spin.0[0], own.moves.speed));
+            Value(vec![x, pool.neg(y), zero])
+        }
+        Freedom::Slide => Value::zero(pool, 3),
+    };
     let mut bias = [column, row].map(|of| of.multiply(pool, &Value::scalar(rate)));
     for (k, bias) in bias.iter_mut().enumerate() {
         let turned = if k == 0 {
@@ -198,7 +238,7 @@ fn release(pool: &mut Pool, body: &Articulated, own: &Moved, spin: &Value) -> (H
         };
         *bias = bias.add(pool, &body.bias[k]).add(pool, &turned);
     }
-    bias[0].0[2] = own.torque;
+    bias[known].0[2] = own.effort;
     (Hinged { by, rate, turning: own_turning }, Articulated { inertia: left, bias })
 }
 
@@ -213,9 +253,9 @@ fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Va
     let [moment, force] = of.bias.map(|bias| up(pool, link, own, &bias));
     let (first, second) = (coupling.multiply(pool, pull), pushing.multiply(pool, pull));
     let (moment, force) = (moment.add(pool, &first), force.add(pool, &second));
-    let arm = link.offset.cross(pool, &force);
+    let arm = own.offset.cross(pool, &force);
     let moment = moment.add(pool, &arm);
-    let skew = link.offset.skew(pool);
+    let skew = own.offset.skew(pool);
     let lever = skew.multiply(pool, &pushing);
     let shifted = coupling.add(pool, &lever);
     let (one, other) = (skew.multiply(pool, &coupling.transpose()), shifted.multiply(pool, &skew).negate(pool));
@@ -225,7 +265,10 @@ fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Va
 
 /// R of a matrix R A R^T turned about the third axis, where A's parts that are equal are one.
 fn about_third(pool: &mut Pool, own: &Moved, of: &Value) -> Value {
-    let (c, s) = (own.cosine, own.sine);
+    if pool.is_zero(own.moves.sine) {
+        return of.clone();
+    }
+    let (c, s) = (own.moves.cosine, own.moves.sine);
     let a = &of.0;
     let difference = pool.sub(a[0], a[4]);
     let sides = pool.add(a[1], a[3]);
@@ -251,14 +294,14 @@ fn rotated(pool: &mut Pool, [c, s]: [Id; 2], [x, y]: [Id; 2]) -> [Id; 2] {
 
 /// A vector of a link in its parent's axes.
 pub(super) fn up(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
-    let [x, y] = rotated(pool, [own.cosine, own.sine], [of.0[0], of.0[1]]);
+    let [x, y] = rotated(pool, [own.moves.cosine, own.moves.sine], [of.0[0], of.0[1]]);
     link.fixed.multiply(pool, &Value(vec![x, y, of.0[2]]))
 }
 
 /// A vector of a link's parent in the link's axes.
 pub(super) fn down(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
     let inside = link.fixed.transpose().multiply(pool, of);
-    let minus = pool.neg(own.sine);
-    let [x, y] = rotated(pool, [own.cosine, minus], [inside.0[0], inside.0[1]]);
+    let minus = pool.neg(own.moves.sine);
+    let [x, y] = rotated(pool, [own.moves.cosine, minus], [inside.0[0], inside.0[1]]);
     Value(vec![x, y, inside.0[2]])
 }

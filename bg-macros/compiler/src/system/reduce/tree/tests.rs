@@ -80,16 +80,25 @@ fn agrees(scene: &Scene) {
 
 /// Hinges one after the other about these axes, with offsets and tensors that are not diagonal.
 fn chain(axes: &[&str], clauses: &str) -> String {
+    joined(&axes.iter().map(|axis| format!("revolute {axis}")).collect::<Vec<_>>(), clauses)
+}
+
+/// The same with joints of these kinds; one with `<` before it goes from the second body to the first.
+fn joined(kinds: &[String], clauses: &str) -> String {
     let mut text = "gravity [0, 0, -9.81]; ground { point O = [0, 0, 0.3]; }".to_owned();
     let mut place = [0.0, 0.0, 0.3];
-    for (k, axis) in axes.iter().enumerate() {
+    for (k, kind) in kinds.iter().enumerate() {
         let upper = if k == 0 { "ground.O".to_owned() } else { format!("b{}.low", k - 1) };
         let [x, y, z] = place;
+        let (kind, ends) = match kind.strip_prefix('<') {
+            Some(kind) => (kind, format!("b{k}.top -> {upper}")),
+            None => (kind.as_str(), format!("{upper} -> b{k}.top")),
+        };
         let _ = write!(
             text,
             "body b{k} {{ mass {}; inertia [[0.1, 0.01, 0.02], [0.01, 0.2, -0.03], [0.02, -0.03, 0.15]];
                 point top = [0.1, 0.2, 0.5]; point low = [0.2, -0.1, -0.4]; start top at [{x}, {y}, {z}]; }}
-             joint j{k}: revolute {axis} ({upper} -> b{k}.top) {{ rigid; }} {clauses}",
+             joint j{k}: {kind} ({ends}) {{ rigid; }} {clauses}",
             1 + k
         );
         place = [x + 0.1, y - 0.3, z - 0.9];
@@ -135,6 +144,46 @@ fn a_tree_with_branches_moves_as_its_bodies_do() {
     agrees(&scene);
 }
 
+/// Joints of all kinds between the ground and bodies, from either end.
+#[test]
+fn joints_of_all_kinds_move_as_their_bodies_do() {
+    let all = [
+        (&["prismatic z"][..], 2),
+        (&["prismatic z", "revolute y"], 4),
+        (&["revolute y", "prismatic x", "revolute x"], 6),
+        (&["revolute x", "<prismatic z", "<revolute y"], 6),
+        (&["cylindrical z", "revolute x"], 6),
+        (&["revolute y", "<cylindrical x"], 6),
+        (&["universal x y", "revolute z"], 6),
+        (&["revolute z", "<universal z x"], 6),
+        (&["revolute y", "fixed", "revolute x"], 4),
+        (&["fixed", "revolute x", "<fixed", "prismatic y"], 4),
+    ];
+    for (kinds, states) in all {
+        let kinds: Vec<String> = kinds.iter().map(|&kind| kind.to_owned()).collect();
+        let scene = put(&format!("{} {}", joined(&kinds, ""), observed(kinds.len(), "")));
+        assert_eq!(scene.reduced.states.len(), states, "{kinds:?}: {:?}", scene.left());
+        agrees(&scene);
+    }
+}
+
+/// Bodies that start turned and moving in their joints, beside their literal graph in a run.
+#[test]
+fn coordinates_start_where_the_bodies_do() {
+    let text = "gravity [0, 0, -9.81]; ground { point O = [0, 0, 0.3]; }
+        body a { mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.1, 0.2]; start turned rotation_z(0.4);
+            start top at [0, 0, 0.5]; start velocity [0, 0, 0.3] + cross([0, 0, 0.7], [sin(0.4) * 0.1, -cos(0.4) * 0.1, 0]); start spin [0, 0, 0.7]; }
+        joint guide: cylindrical z (ground.O -> a.top) { rigid; }
+        body b { mass 1; inertia [0.2, 0.1, 0.15]; point top = [0.1, 0, 0.3]; start turned rotation_z(0.4) * rotation_x(0.5) * rotation_y(-0.8);
+            start top at [0, 0, 0.5]; start spin [0, 0, 0.7];
+            start velocity [0, 0, 0.3] - cross([0, 0, 0.7], rotation_z(0.4) * rotation_x(0.5) * rotation_y(-0.8) * [0.1, 0, 0.3]); }
+        joint cross: universal x y (a.top -> b.top) { rigid; }
+        observe { a.position; b.position; a.orientation; b.orientation; d: m = guide.travel; w: rad/s = guide.speed; }";
+    let scene = scene(text, "tune {}");
+    assert_eq!(scene.left().len(), 8, "{}", scene.report);
+    scene.agrees_to(1e-9);
+}
+
 /// What acts about hinges, on bodies and between them, by laws of angles and speeds.
 #[test]
 fn loads_of_all_kinds_are_those_of_the_bodies() {
@@ -167,7 +216,7 @@ fn put(statements: &str) -> Scene {
     let derived = crate::pipeline::derive(&variant.graph).expect("equations").equations;
     let (mut literal, mut reduced) = (derived.clone(), derived);
     let mut report = crate::system::reduce::Report::new(&reduced);
-    super::put(&mut reduced, &mut report).expect("a tree of hinges");
+    super::put(&mut reduced, &mut report).unwrap_or_else(|| panic!("no tree: {statements}"));
     for equations in [&mut literal, &mut reduced] {
         solve_reactions(equations);
         equations.close();
