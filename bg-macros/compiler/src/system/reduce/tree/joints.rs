@@ -19,6 +19,17 @@ pub(super) enum Freedom {
     Turn,
     /// A travel, m, and its speed, m/s.
     Slide,
+    /// All turning: the body keeps its orientation and its angular momentum.
+    Ball,
+    /// All motion: the body keeps all its states.
+    Free,
+}
+
+impl Freedom {
+    /// Whether it has a coordinate of its own.
+    pub fn has_coordinate(self) -> bool {
+        matches!(self, Self::Turn | Self::Slide)
+    }
 }
 
 /// One freedom of a joint.
@@ -36,7 +47,10 @@ pub(super) enum Kind {
     Prismatic,
     Cylindrical,
     Universal,
+    Spherical,
     Fixed,
+    /// Of a body on no joint, which carries others.
+    Floating,
 }
 
 const ALONG: Matrix = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
@@ -44,6 +58,8 @@ const ALONG: Matrix = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 const ACROSS: Matrix = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
 const TURN: Step = Step { before: ALONG, freedom: Freedom::Turn };
 const SLIDE: Step = Step { before: ALONG, freedom: Freedom::Slide };
+const BALL: Step = Step { before: ALONG, freedom: Freedom::Ball };
+const FREE: Step = Step { before: ALONG, freedom: Freedom::Free };
 const TURN_ACROSS: Step = Step { before: ACROSS, freedom: Freedom::Turn };
 
 /// The steps that a joint has at most.
@@ -57,6 +73,7 @@ impl Kind {
             (2, 3) => Some(Self::Prismatic),
             (2, 2) => Some(Self::Cylindrical),
             (3, 1) => Some(Self::Universal),
+            (3, 0) => Some(Self::Spherical),
             (3, 3) => Some(Self::Fixed),
             _ => None,
         }
@@ -68,7 +85,9 @@ impl Kind {
             Self::Prismatic => &[SLIDE],
             Self::Cylindrical => &[SLIDE, TURN],
             Self::Universal => &[TURN, TURN_ACROSS],
+            Self::Spherical => &[BALL],
             Self::Fixed => &[],
+            Self::Floating => &[FREE],
         }
     }
 }
@@ -146,8 +165,31 @@ impl Probe {
 }
 
 impl Joint {
+    /// A body that moves freely, with what it carries.
+    pub fn floating(pool: &mut Pool, body: usize) -> Self {
+        Self {
+            name: String::new(),
+            rows: Vec::new(),
+            parent: None,
+            child: body,
+            kind: Kind::Floating,
+            frames: [ALONG; 2],
+            at: [Value::zero(pool, 3), Value::zero(pool, 3)],
+        }
+    }
+
     pub fn steps(&self) -> &'static [Step] {
         self.kind.steps()
+    }
+
+    /// The states of its child that it gives.
+    pub fn given(&self, bodies: &[Body]) -> Vec<usize> {
+        let body = &bodies[self.child];
+        match self.kind {
+            Kind::Floating => Vec::new(),
+            Kind::Spherical => body.place.iter().chain(&body.linear).copied().collect(),
+            _ => body.states().collect(),
+        }
     }
 
     /// Each state and velocity of the child by those of the parent and the joint; with `turned` the parent's axes are
@@ -187,6 +229,7 @@ impl Joint {
                     spin = spin.add(pool, &along);
                     turn = turn.about_third(pool, moves);
                 }
+                Freedom::Ball | Freedom::Free => {}
                 Freedom::Slide => {
                     let by = third.multiply(pool, &Value::scalar(moves.place));
                     arm = arm.add(pool, &by);
@@ -194,13 +237,18 @@ impl Joint {
                 }
             }
         }
-        let relative = turn.times(&numbers::transposed(&self.frames[1])).value(pool);
-        let child = axes.multiply(pool, &relative);
+        let body = &bodies[self.child];
+        let child = if self.kind == Kind::Spherical {
+            spin = own(pool, self.child, 3);
+            symbols(pool, &body.axes)
+        } else {
+            let relative = turn.times(&numbers::transposed(&self.frames[1])).value(pool);
+            axes.multiply(pool, &relative)
+        };
         let back = child.multiply(pool, &self.at[1]).negate(pool);
         let there = place.add(pool, &arm).add(pool, &back);
         let (first, second) = (before.cross(pool, &arm), spin.cross(pool, &back));
         let moved = fast.add(pool, &first).add(pool, &slid).add(pool, &second);
-        let body = &bodies[self.child];
         let states = body.axes.iter().chain(&body.place).map(|&state| Symbol::state(state));
         images.extend(states.zip(child.0.into_iter().chain(there.0)));
         images.extend((0..6).map(|k| velocity(self.child, k)).zip(moved.0.into_iter().chain(spin.0)));

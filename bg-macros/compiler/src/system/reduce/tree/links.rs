@@ -105,7 +105,7 @@ pub(super) fn of(pool: &mut Pool, bodies: &[Body], joints: &[Joint]) -> (Vec<Lin
 /// The offset of a link whose place this is, with the place where its joint goes on from its origin: the origin of what
 /// turns is moved along the axis.
 fn placed(pool: &mut Pool, freedom: Freedom, frame: &Matrix, from: Value) -> (Value, Value) {
-    if freedom == Freedom::Slide {
+    if freedom != Freedom::Turn {
         return (from, Value::zero(pool, 3));
     }
     let axis = numbers::column(frame, 2);
@@ -144,7 +144,7 @@ fn count(pool: &mut Pool, link: &mut Link, body: &Body, seat: &Seat) {
 fn lighten(pool: &mut Pool, links: &mut [Link], index: usize) {
     let zero = pool.zero();
     let link = links[index].clone();
-    if link.freedom == Freedom::Slide {
+    if link.freedom != Freedom::Turn {
         return;
     }
     let (mass, first, about) = link.counted;

@@ -9,7 +9,7 @@ use super::joints::{Freedom, Joint, Kind, Moves};
 use super::links::{Link, Seat};
 use super::motion;
 use super::numbers;
-use super::recursion::Moved;
+use super::recursion::{Moved, Own};
 use crate::expr::{Id, Node, Pool};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
@@ -42,8 +42,20 @@ impl Loads {
         let (mut moved, mut axes): (Vec<Moved>, Vec<Value>) = (Vec::new(), Vec::new());
         for (k, link) in tree.links.iter().enumerate() {
             let moves = coordinates[link.step.0][link.step.1];
-            axes.push(motion::axes(pool, tree.links, &axes, k, &moves));
-            moved.push(Moved::new(pool, link, moves));
+            if link.freedom.has_coordinate() {
+                axes.push(motion::axes(pool, tree.links, &axes, k, &moves));
+                moved.push(Moved::new(pool, link, moves, None));
+                continue;
+            }
+            let body = &tree.bodies[tree.joints[link.step.0].child];
+            let turned = bodies::symbols(pool, &body.axes);
+            let own = own(pool, body, link.freedom, &turned, link.parent.map(|parent| &axes[parent]));
+            axes.push(turned);
+            let mut all = Moved::new(pool, link, moves, Some(own));
+            if link.freedom == Freedom::Free {
+                all.offset = bodies::symbols(pool, &body.place);
+            }
+            moved.push(all);
         }
         for (k, link) in tree.links.iter().enumerate().rev() {
             if link.freedom == Freedom::Turn {
@@ -62,6 +74,20 @@ impl Loads {
         }
         Self { moved, axes, ground: fall.negate(pool) }
     }
+}
+
+/// What the states of a body say of a link whose axes are the body's, `turned`, on one with axes `under`.
+fn own(pool: &mut Pool, body: &Body, freedom: Freedom, turned: &Value, under: Option<&Value>) -> Own {
+    let back = turned.transpose();
+    let [angular, linear] = [&body.angular, &body.linear].map(|of| bodies::symbols(pool, of));
+    let inside = back.multiply(pool, &angular);
+    let spin = body.mobility.multiply(pool, &inside);
+    let fast = (freedom == Freedom::Free).then(|| back.multiply(pool, &linear).divide(pool, body.mass));
+    let turned = match under {
+        Some(under) => under.transpose().multiply(pool, turned),
+        None => turned.clone(),
+    };
+    Own { turned, spin, fast }
 }
 
 /// The acceleration by which weights move all bodies of the tree, in place of these; zero where constant forces are no

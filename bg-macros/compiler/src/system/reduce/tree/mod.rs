@@ -46,6 +46,7 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     equations.rewrite(&|pool, ids| exchange(pool, ids, &spins));
     let joints = joints(equations, &bodies)?;
     let of_bodies: BTreeSet<usize> = joints.iter().flat_map(|joint| bodies[joint.child].states()).collect();
+    let given: BTreeSet<usize> = joints.iter().flat_map(|joint| joint.given(&bodies)).collect();
     release(equations, &joints, &of_bodies)?;
     literal.keep_mobilities(equations);
     let first = 6 * bodies.len() + joints::PROBES;
@@ -55,10 +56,11 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     let tree = Tree { bodies: &bodies, joints: &joints, links: &links, seats: &seats };
     let Loads { moved, axes, ground } = Loads::of(equations, &tree, &coordinates);
     let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
-    let rates = recursion::rates(&mut equations.pool, &links, &moved, &motion.spins, &ground);
+    let found = recursion::accelerations(&mut equations.pool, &links, &moved, &motion.spins, &ground);
     let starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
     motion.energies(equations, &bodies, &seats);
-    let mut images = motion.images(&mut equations.pool, &bodies, &seats);
+    let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
+    motion.momenta(equations, &tree, &found, &ground);
     for (index, body) in bodies.iter().enumerate() {
         for (k, &spin) in body.spin.iter().enumerate() {
             // Of a body on no such joint, which keeps its states.
@@ -67,13 +69,16 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     }
     let mut kept = vec![true; equations.states.len()];
     for joint in &joints {
-        for state in bodies[joint.child].states() {
+        for state in joint.given(&bodies) {
             kept[state] = false;
             report.say(state, Fate::Joined(joint.name.clone()));
         }
     }
     let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
-    for (link, (own, &rate)) in links.iter().zip(moved.iter().zip(&rates)) {
+    for (link, (own, &rate)) in links.iter().zip(moved.iter().zip(&found.rates)) {
+        if !link.freedom.has_coordinate() {
+            continue;
+        }
         let (number, step) = link.step;
         let body = &bodies[joints[number].child];
         let Origin::Orientation(track, ..) = equations.states[body.axes[0]].origin else { return None };
@@ -81,7 +86,7 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
         let names = names(&joints[number], step);
         let units = match link.freedom {
             Freedom::Turn => ["rad", "rad/s"],
-            Freedom::Slide => ["m", "m/s"],
+            _ => ["m", "m/s"],
         };
         let origins = [Origin::Hinge(track, step), Origin::Speed(track, step)];
         let slots = [body.place[step], body.linear[step]];
@@ -97,7 +102,7 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
             places.insert(symbol, equations.pool.symbol(Symbol::state(state)));
         }
     }
-    equations.projections.retain(|(state, _)| !of_bodies.contains(state));
+    equations.projections.retain(|(state, _)| !given.contains(state));
     equations.replace(&|symbol| images.get(&symbol).copied());
     equations.replace(&|symbol| places.get(&symbol).copied());
     super::live::keep_states(equations, report, &kept);
@@ -207,6 +212,8 @@ fn is_planar(joints: &[Joint]) -> bool {
         let is_along = |freedom| match freedom {
             Freedom::Turn => joint.frames.iter().all(|frame| third(frame) == 1.0),
             Freedom::Slide => joint.frames.iter().all(|frame| third(frame) == 0.0),
+            Freedom::Ball => false,
+            Freedom::Free => true,
         };
         joint.steps().iter().all(|step| is_along(step.freedom))
     })

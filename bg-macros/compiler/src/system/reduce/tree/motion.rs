@@ -9,8 +9,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::bodies::{Body, symbols, velocity};
 use super::joints::{Freedom, Joint, Kind, Moves, Probe};
 use super::links::{Link, Seat};
+use super::loads::Tree;
 use super::numbers;
-use super::recursion::{Moved, down, spins};
+use super::recursion::{Accelerations, Moved, down, rate_of_angular, spins};
 use crate::expr::{Function, Id, Node, Pool, Symbol, children, exchange, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
@@ -26,7 +27,7 @@ pub(super) fn coordinates(pool: &mut Pool, first: usize, joints: &[Joint]) -> Ve
         let [place, speed] = [symbol(pool), symbol(pool)];
         let [cosine, sine] = match freedom {
             Freedom::Turn => [Function::Cos, Function::Sin].map(|of| pool.call(of, &[place])),
-            Freedom::Slide => [pool.one(), pool.zero()],
+            _ => [pool.one(), pool.zero()],
         };
         Moves { place, cosine, sine, speed }
     };
@@ -137,7 +138,7 @@ impl Motion {
                 }
                 None => (offset.clone(), Value::zero(pool, 3)),
             };
-            let mut there = there;
+            let mut there = moved[k].own.as_ref().and_then(|own| own.fast.clone()).unwrap_or(there);
             if link.freedom == Freedom::Slide {
                 there.0[2] = pool.add(there.0[2], moved[k].moves.speed);
             }
@@ -155,8 +156,14 @@ impl Motion {
         Self { axes, origins, spins, centres }
     }
 
-    /// Each state and velocity of the bodies.
-    pub fn images(&self, pool: &mut Pool, bodies: &[Body], seats: &[Seat]) -> BTreeMap<Symbol, Id> {
+    /// Each of the states that joints give, and the velocities of the bodies.
+    pub fn images(
+        &self,
+        pool: &mut Pool,
+        bodies: &[Body],
+        seats: &[Seat],
+        given: &BTreeSet<usize>,
+    ) -> BTreeMap<Symbol, Id> {
         let mut images = BTreeMap::new();
         for (seat, centre) in seats.iter().zip(&self.centres) {
             let (own, origin, spin) = match seat.link {
@@ -178,12 +185,44 @@ impl Motion {
                 (&body.linear[..], &momentum),
                 (&body.angular[..], &angular),
             ] {
-                images.extend(states.iter().map(|&state| Symbol::state(state)).zip(values.0.iter().copied()));
+                let states = states.iter().zip(&values.0).filter(|(state, _)| given.contains(state));
+                images.extend(states.map(|(&state, &id)| (Symbol::state(state), id)));
             }
             let motion = fast.0.iter().chain(&spin.0).copied();
             images.extend((0..6).map(|k| velocity(seat.body, k)).zip(motion));
         }
         images
+    }
+
+    /// Writes the rates of the momenta that bodies keep.
+    pub fn momenta(
+        &self,
+        equations: &mut StateEquations,
+        tree: &Tree<'_>,
+        accelerations: &Accelerations,
+        ground: &Value,
+    ) {
+        let StateEquations { pool, states, .. } = equations;
+        for seat in tree.seats {
+            let Some(link) = seat.link.filter(|&link| !tree.links[link].freedom.has_coordinate()) else { continue };
+            if tree.joints[tree.links[link].step.0].child != seat.body {
+                continue;
+            }
+            let body = &tree.bodies[seat.body];
+            let [turning, there] = &accelerations.links[link];
+            let angular = rate_of_angular(pool, &seat.central, &self.spins[link], turning);
+            let angular = self.axes[link].multiply(pool, &angular);
+            let mut rates: Vec<(usize, Id)> = body.angular.into_iter().zip(angular.0).collect();
+            if tree.links[link].freedom == Freedom::Free {
+                let falls = ground.negate(pool);
+                let linear = self.axes[link].multiply(pool, there).add(pool, &falls);
+                let linear = linear.multiply(pool, &Value::scalar(body.mass));
+                rates.extend(body.linear.into_iter().zip(linear.0));
+            }
+            for (state, rate) in rates {
+                states[state].rate = rate;
+            }
+        }
     }
 
     /// Writes the kinetic energies in the links' axes.
@@ -266,6 +305,6 @@ pub(super) fn starts(equations: &mut StateEquations, bodies: &[Body], joint: &Jo
         Kind::Prismatic => vec![slide(pool)],
         Kind::Cylindrical => vec![slide(pool), turn(pool, 3, 0, &axis)],
         Kind::Universal => vec![turn(pool, 5, 2, &axis), turn(pool, 6, 7, &last)],
-        Kind::Fixed => Vec::new(),
+        Kind::Spherical | Kind::Fixed | Kind::Floating => Vec::new(),
     }
 }

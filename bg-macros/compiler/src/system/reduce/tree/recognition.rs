@@ -32,8 +32,22 @@ pub(super) fn of(equations: &mut StateEquations, bodies: &[Body], starts: &Envir
             [a, b] if has(b) && !has(a) => Some((place, Some(b), a)),
             _ => None,
         });
-        let Some((place, parent, child)) = next else { return tree };
-        tree.extend(joint(equations, bodies, &given, left.remove(place), (parent, child)));
+        if let Some((place, parent, child)) = next {
+            tree.extend(joint(equations, bodies, &given, left.remove(place), (parent, child)));
+            continue;
+        }
+        // A body that hangs on nothing carries what joints hang on it.
+        let Some(base) = left.iter().find_map(|rows| rows.ends.first().copied().filter(|&body| !has(body))) else {
+            let carries = |body: usize| tree.iter().any(|joint| joint.parent == Some(body));
+            let is_needed: Vec<bool> =
+                tree.iter().map(|joint| joint.kind != Kind::Floating || carries(joint.child)).collect();
+            return tree
+                .into_iter()
+                .zip(is_needed)
+                .filter_map(|(joint, is_needed)| is_needed.then_some(joint))
+                .collect();
+        };
+        tree.push(Joint::floating(&mut equations.pool, base));
     }
 }
 
@@ -133,6 +147,7 @@ fn joint(
         Kind::Revolute | Kind::Cylindrical => shared(pool, ends, &about, given)?,
         Kind::Prismatic => whole(pool, ends, &along, given)?,
         Kind::Fixed => whole(pool, ends, &[], given)?,
+        Kind::Spherical | Kind::Floating => [numbers::upright(&[0.0, 0.0, 1.0]); 2],
     };
     let of_translations: Vec<Id> = translations.iter().map(|&row| gaps[row]).collect();
     let at = points(pool, ends, (&of_translations, &along))?;
@@ -340,7 +355,7 @@ fn starts_so(equations: &mut StateEquations, bodies: &[Body], joint: &Joint, giv
     let together: &[usize] = match joint.kind {
         Kind::Revolute | Kind::Cylindrical => &[2],
         Kind::Prismatic | Kind::Fixed => &[0, 1, 2],
-        Kind::Universal => &[],
+        Kind::Universal | Kind::Spherical | Kind::Floating => &[],
     };
     let mut all = Vec::new();
     for &column in together {

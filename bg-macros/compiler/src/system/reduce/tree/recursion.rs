@@ -9,6 +9,7 @@ use super::joints::{Freedom, Moves};
 use super::links::Link;
 use crate::expr::{Id, Pool};
 use crate::system::Value;
+use crate::system::equations::definite::Factors;
 
 /// What moves a link.
 #[derive(Clone, Debug)]
@@ -20,18 +21,31 @@ pub(super) struct Moved {
     pub effort: Id,
     /// Moment about its origin and force, in its axes.
     pub load: [Value; 2],
+    /// Of a link whose body keeps its orientation.
+    pub own: Option<Own>,
+}
+
+/// What the states of a body say of its link.
+#[derive(Clone, Debug)]
+pub(super) struct Own {
+    /// From its axes to its parent's.
+    pub turned: Value,
+    /// Its angular velocity, in its axes.
+    pub spin: Value,
+    /// Of one that moves freely the velocity of its origin, in its axes.
+    pub fast: Option<Value>,
 }
 
 impl Moved {
     /// What moves a link without a load.
-    pub fn new(pool: &mut Pool, link: &Link, moves: Moves) -> Self {
+    pub fn new(pool: &mut Pool, link: &Link, moves: Moves, own: Option<Own>) -> Self {
         let (zero, still) = (pool.zero(), Value::zero(pool, 3));
         let mut offset = link.offset.clone();
         if link.freedom == Freedom::Slide {
             let by = link.fixed.multiply(pool, &Value(vec![zero, zero, moves.place]));
             offset = offset.add(pool, &by);
         }
-        Self { moves, offset, effort: zero, load: [still.clone(), still] }
+        Self { moves, offset, effort: zero, load: [still.clone(), still], own }
     }
 }
 
@@ -46,21 +60,37 @@ struct Articulated {
 
 /// What is known of a link on the way back.
 #[derive(Clone, Debug)]
-struct Hinged {
-    /// By how much the speed's rate falls with the parent's accelerations.
-    by: [Value; 2],
-    rate: Id,
-    /// Its angular acceleration beside its parent's and what its speed's rate gives.
-    turning: Value,
+enum Known {
+    /// Of a freedom with a coordinate.
+    Step {
+        /// By how much the speed's rate falls with the parent's accelerations.
+        by: [Value; 2],
+        rate: Id,
+        /// Its angular acceleration beside its parent's and what its speed's rate gives.
+        turning: Value,
+    },
+    /// The angular acceleration is this vector less this matrix by the acceleration of the origin.
+    Ball(Value, Value),
+    /// The accelerations.
+    Free([Value; 2]),
+}
+
+/// How links are accelerated.
+pub(super) struct Accelerations {
+    /// The rates of the speeds; zero of a link that has none of its own.
+    pub rates: Vec<Id>,
+    /// The angular acceleration, and that of the origin beside the ground's, in the link's axes.
+    pub links: Vec<[Value; 2]>,
 }
 
 /// The angular velocity of each link, in its axes.
 pub(super) fn spins(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Vec<Value> {
     let mut spins: Vec<Value> = Vec::new();
     for (link, own) in links.iter().zip(moved) {
-        let mut spin = match link.parent {
-            Some(parent) => down(pool, link, own, &spins[parent]),
-            None => Value::zero(pool, 3),
+        let mut spin = match (&own.own, link.parent) {
+            (Some(own), _) => own.spin.clone(),
+            (None, Some(parent)) => down(pool, link, own, &spins[parent]),
+            (None, None) => Value::zero(pool, 3),
         };
         if link.freedom == Freedom::Turn {
             spin.0[2] = pool.add(spin.0[2], own.moves.speed);
@@ -70,8 +100,14 @@ pub(super) fn spins(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Vec<Val
     spins
 }
 
-/// The rates of the speeds, where links have these angular velocities and the ground this acceleration.
-pub(super) fn rates(pool: &mut Pool, links: &[Link], moved: &[Moved], spins: &[Value], ground: &Value) -> Vec<Id> {
+/// How links are accelerated that have these angular velocities, where the ground has this acceleration.
+pub(super) fn accelerations(
+    pool: &mut Pool,
+    links: &[Link],
+    moved: &[Moved],
+    spins: &[Value],
+    ground: &Value,
+) -> Accelerations {
     let squares: Vec<Value> = spins.iter().map(|spin| square(pool, spin)).collect();
     let mut bodies: Vec<Articulated> = Vec::new();
     for (k, link) in links.iter().enumerate() {
@@ -79,11 +115,18 @@ pub(super) fn rates(pool: &mut Pool, links: &[Link], moved: &[Moved], spins: &[V
     }
     let pulls: Vec<Value> =
         links.iter().zip(moved).map(|(link, own)| pull(pool, link, own, (&squares, spins))).collect();
-    let mut hinged: Vec<Option<Hinged>> = vec![None; links.len()];
+    let mut all: Vec<Option<Known>> = vec![None; links.len()];
     for k in (0..links.len()).rev() {
         let (link, own) = (&links[k], &moved[k]);
-        let (known, left) = release(pool, link.freedom, &bodies[k], own, &spins[k]);
-        hinged[k] = Some(known);
+        let (known, left) = match link.freedom {
+            Freedom::Turn | Freedom::Slide => release(pool, link.freedom, &bodies[k], own, &spins[k]),
+            Freedom::Ball => release_ball(pool, &bodies[k]),
+            Freedom::Free => {
+                all[k] = Some(Known::Free(bodies[k].alone(pool)));
+                continue;
+            }
+        };
+        all[k] = Some(known);
         if let Some(parent) = link.parent {
             let carried = carried(pool, link, own, left, &pulls[k]);
             let both = bodies[parent].clone();
@@ -93,28 +136,47 @@ pub(super) fn rates(pool: &mut Pool, links: &[Link], moved: &[Moved], spins: &[V
     let mut accelerations: Vec<[Value; 2]> = Vec::new();
     let mut rates = Vec::new();
     for (k, link) in links.iter().enumerate() {
-        let known = hinged[k].clone().expect("every link is gone through");
         let still = [Value::zero(pool, 3), ground.clone()];
         let [turning, there] = link.parent.map_or(still, |parent| accelerations[parent].clone());
         let beside = turning.cross(pool, &moved[k].offset);
         let there = there.add(pool, &beside).add(pool, &pulls[k]);
-        let mut turning = down(pool, link, &moved[k], &turning).add(pool, &known.turning);
         let mut there = down(pool, link, &moved[k], &there);
-        let parts = [known.by[0].dot(pool, &turning), known.by[1].dot(pool, &there)];
-        let rate = pool.linear(0.0, &[(known.rate, 1.0), (parts[0], -1.0), (parts[1], -1.0)]);
-        let along = if link.freedom == Freedom::Turn { &mut turning } else { &mut there };
-        along.0[2] = pool.add(along.0[2], rate);
+        let (rate, turning) = match all[k].clone().expect("every link is gone through") {
+            Known::Step { by, rate, turning: own } => {
+                let mut turning = down(pool, link, &moved[k], &turning).add(pool, &own);
+                let parts = [by[0].dot(pool, &turning), by[1].dot(pool, &there)];
+                let rate = pool.linear(0.0, &[(rate, 1.0), (parts[0], -1.0), (parts[1], -1.0)]);
+                let along = if link.freedom == Freedom::Turn { &mut turning } else { &mut there };
+                along.0[2] = pool.add(along.0[2], rate);
+                (rate, turning)
+            }
+            Known::Ball(still, by) => {
+                let by = by.multiply(pool, &there).negate(pool);
+                (pool.zero(), still.add(pool, &by))
+            }
+            Known::Free([turning, own]) => {
+                there = own;
+                (pool.zero(), turning)
+            }
+        };
         rates.push(rate);
         accelerations.push([turning, there]);
     }
-    rates
+    Accelerations { rates, links: accelerations }
+}
+
+/// The rate of a body's angular momentum about its centre of mass, in its axes.
+pub(super) fn rate_of_angular(pool: &mut Pool, central: &Value, spin: &Value, turning: &Value) -> Value {
+    let square = square(pool, spin);
+    let beside = gyroscopic(pool, central, &square);
+    central.multiply(pool, turning).add(pool, &beside)
 }
 
 /// How a link's origin is accelerated by the turning of its parent and its own sliding.
 fn pull(pool: &mut Pool, link: &Link, own: &Moved, (squares, spins): (&[Value], &[Value])) -> Value {
     let Some(parent) = link.parent else { return Value::zero(pool, 3) };
     let pull = squares[parent].multiply(pool, &own.offset);
-    if link.freedom == Freedom::Turn {
+    if link.freedom != Freedom::Slide {
         return pull;
     }
     let zero = pool.zero();
@@ -129,6 +191,20 @@ impl Articulated {
         let inertia = std::array::from_fn(|k| self.inertia[k].add(pool, &other.inertia[k]));
         let bias = std::array::from_fn(|k| self.bias[k].add(pool, &other.bias[k]));
         Self { inertia, bias }
+    }
+
+    /// The accelerations of a link that nothing carries.
+    fn alone(&self, pool: &mut Pool) -> [Value; 2] {
+        let [turning, coupling, pushing] = &self.inertia;
+        // Forces before moments: the matrix of masses has most zeros.
+        let row = |of: &Value, k: usize, most: usize| of.0[3 * k..3 * k + most].to_vec();
+        let mut lower: Vec<Vec<Id>> = (0..3).map(|k| row(pushing, k, k + 1)).collect();
+        lower.extend((0..3).map(|k| [row(coupling, k, 3), row(turning, k, k + 1)].concat()));
+        let factors = Factors::of(pool, &lower, |pool, _, pivot, _| pool.powi(pivot, -1));
+        let [moment, force] = [0, 1].map(|k| self.bias[k].negate(pool));
+        let mut there = factors.solve(pool, &[force.0, moment.0].concat());
+        let turning = there.split_off(3);
+        [Value(turning), Value(there)]
     }
 }
 
@@ -184,15 +260,15 @@ fn gyroscopic(pool: &mut Pool, about: &Value, square: &Value) -> Value {
     )
 }
 
-/// A link seen through its freedom.
-fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, spin: &Value) -> (Hinged, Articulated) {
+/// A link seen through a turn or a slide.
+fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, spin: &Value) -> (Known, Articulated) {
     let [turning, coupling, pushing] = &body.inertia;
     let zero = pool.zero();
     // Moment and force by its speed's rate.
     let third = |of: &Value| Value(vec![of.0[2], of.0[5], of.0[8]]);
     let (column, row, pivot) = match freedom {
         Freedom::Turn => (third(turning), Value(coupling.0[6..].to_vec()), turning.0[8]),
-        Freedom::Slide => (third(coupling), third(pushing), pushing.0[8]),
+        _ => (third(coupling), third(pushing), pushing.0[8]),
     };
     let inverse = pool.powi(pivot, -1);
     let by = [column.multiply(pool, &Value::scalar(inverse)), row.multiply(pool, &Value::scalar(inverse))];
@@ -213,7 +289,7 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
     // What the freedom takes no effort along.
     let (own_block, of_coupling) = match freedom {
         Freedom::Turn => (0, [6, 7, 8]),
-        Freedom::Slide => (2, [2, 5, 8]),
+        _ => (2, [2, 5, 8]),
     };
     for k in [2, 5, 6, 7, 8] {
         left[own_block].0[k] = zero;
@@ -227,7 +303,7 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
             let (x, y) = (pool.mul(spin.0[1], own.moves.speed), pool.mul(spin.0[0], own.moves.speed));
             Value(vec![x, pool.neg(y), zero])
         }
-        Freedom::Slide => Value::zero(pool, 3),
+        _ => Value::zero(pool, 3),
     };
     let mut bias = [column, row].map(|of| of.multiply(pool, &Value::scalar(rate)));
     for (k, bias) in bias.iter_mut().enumerate() {
@@ -239,13 +315,30 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
         *bias = bias.add(pool, &body.bias[k]).add(pool, &turned);
     }
     bias[known].0[2] = own.effort;
-    (Hinged { by, rate, turning: own_turning }, Articulated { inertia: left, bias })
+    (Known::Step { by, rate, turning: own_turning }, Articulated { inertia: left, bias })
+}
+
+/// A link seen through a ball: no moment is left.
+fn release_ball(pool: &mut Pool, body: &Articulated) -> (Known, Articulated) {
+    let [turning, coupling, pushing] = &body.inertia;
+    let inverse = turning.inverse(pool);
+    let by = inverse.multiply(pool, coupling);
+    let still = inverse.multiply(pool, &body.bias[0]).negate(pool);
+    let back = coupling.transpose();
+    let less = back.multiply(pool, &by).negate(pool);
+    let pushing = super::links::symmetric(&pushing.add(pool, &less));
+    let force = back.multiply(pool, &still).add(pool, &body.bias[1]);
+    let (none, nothing) = (Value::zero(pool, 9), Value::zero(pool, 3));
+    (Known::Ball(still, by), Articulated { inertia: [none.clone(), none, pushing], bias: [nothing, force] })
 }
 
 /// A link without its hinge, in the axes of its parent and about the parent's origin.
 fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Value) -> Articulated {
     let [turning, coupling, pushing] = of.inertia;
     let turn = |pool: &mut Pool, matrix: Value| {
+        if let Some(own) = &own.own {
+            return own.turned.multiply(pool, &matrix).multiply(pool, &own.turned.transpose());
+        }
         let about = about_third(pool, own, &matrix);
         link.fixed.multiply(pool, &about).multiply(pool, &link.fixed.transpose())
     };
@@ -293,13 +386,19 @@ fn rotated(pool: &mut Pool, [c, s]: [Id; 2], [x, y]: [Id; 2]) -> [Id; 2] {
 }
 
 /// A vector of a link in its parent's axes.
-pub(super) fn up(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
+fn up(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
+    if let Some(own) = &own.own {
+        return own.turned.multiply(pool, of);
+    }
     let [x, y] = rotated(pool, [own.moves.cosine, own.moves.sine], [of.0[0], of.0[1]]);
     link.fixed.multiply(pool, &Value(vec![x, y, of.0[2]]))
 }
 
 /// A vector of a link's parent in the link's axes.
 pub(super) fn down(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
+    if let Some(own) = &own.own {
+        return own.turned.transpose().multiply(pool, of);
+    }
     let inside = link.fixed.transpose().multiply(pool, of);
     let minus = pool.neg(own.moves.sine);
     let [x, y] = rotated(pool, [own.moves.cosine, minus], [inside.0[0], inside.0[1]]);
