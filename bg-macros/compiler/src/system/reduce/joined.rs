@@ -11,12 +11,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::dyad::{Root, Turned};
 use super::report::Fate;
 use super::speeds::of_kind;
+use super::zero::{ROUNDING, value, vanishes};
 use super::{angle, friction};
 use crate::expr::{Circles, Environment, Id, Pool, Symbol, derivative, evaluate, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, Origin, StateEquations};
-
-/// A gap at the start below it is rounding of the numbers that place the bodies, m.
-const ROUNDING: f64 = 1e-12;
 
 /// Solved rows and what they determine.
 pub(super) struct Choice {
@@ -275,17 +273,6 @@ pub(super) struct Row {
     pub flow: Id,
     pub gap: Id,
     pub slopes: BTreeMap<usize, Id>,
-}
-
-/// Whether an expression is zero whatever its symbols are, or a number that is rounding.
-pub(super) fn vanishes(pool: &mut Pool, of: Id) -> bool {
-    let zero = pool.zero();
-    value(pool, of).is_some_and(|value| value.abs() < ROUNDING) || same_polynomial(pool, of, zero)
-}
-
-/// The value of an expression of numbers alone.
-fn value(pool: &Pool, of: Id) -> Option<f64> {
-    pool.symbols(&[of]).is_empty().then(|| evaluate(pool, &[of], &Environment::default())[0])
 }
 
 /// The state in which an expression that is linear in it, with this slope, is zero.

@@ -21,6 +21,7 @@ mod report;
 mod speeds;
 mod tree;
 mod turned;
+mod zero;
 
 use crate::expr::{Branch, Id, Node, Pool, Symbol};
 use crate::system::equations::{Origin, StateEquations};

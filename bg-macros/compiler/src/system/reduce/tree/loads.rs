@@ -1,8 +1,9 @@
 //! What moves the links beside their joints.
 //!
-//! In: the rates of the bodies' momenta without reactions. Out: for each link the torque about its hinge, moment and
-//! force of everything else in its axes, and an acceleration of the ground in place of weights. Method: a torque is what
-//! the moments of both bodies have opposite to each other along the axis.
+//! In: the rates of the bodies' momenta without reactions. Out: for each link the torque about its hinge or the force
+//! along its slide, moment and force of everything else in its axes, and an acceleration of the ground in place of
+//! weights. Method: a torque is what the moments of both bodies have opposite to each other along the axis, a force what
+//! their forces have so.
 
 use super::bodies::{self, Body};
 use super::joints::{Freedom, Joint, Kind, Moves};
@@ -58,8 +59,8 @@ impl Loads {
             moved.push(all);
         }
         for (k, link) in tree.links.iter().enumerate().rev() {
-            if link.freedom == Freedom::Turn {
-                moved[k].effort = torque(pool, tree, &mut forces, link);
+            if link.freedom.has_coordinate() {
+                moved[k].effort = effort(pool, tree, &mut forces, link);
             }
         }
         for seat in tree.seats {
@@ -103,7 +104,7 @@ fn fall(pool: &mut Pool, tree: &Tree<'_>, forces: &mut [[Value; 2]]) -> Value {
     };
     for (&body, weight) in moved.iter().zip(&weights) {
         let back = weight.negate(pool);
-        forces[body][1] = forces[body][1].add(pool, &back);
+        forces[body][1] = added(pool, &forces[body][1], &back);
     }
     fall.clone()
 }
@@ -118,62 +119,124 @@ fn is_alike(pool: &Pool, a: &Value, b: &Value) -> bool {
 
 /// What of a sum depends on parameters alone.
 fn constant_part(pool: &mut Pool, of: Id) -> Id {
-    if is_constant(pool, of) {
-        return of;
-    }
-    let Node::Sum { constant, terms } = pool.node(of).clone() else { return pool.zero() };
-    let parts: Vec<(Id, f64)> =
-        terms.iter().filter(|(term, _)| is_constant(pool, *term)).map(|(term, by)| (*term, by.value())).collect();
-    pool.linear(constant.value(), &parts)
+    let (constant, terms) = flat(pool, of);
+    let parts: Vec<(Id, f64)> = terms.into_iter().filter(|(term, _)| is_constant(pool, *term)).collect();
+    pool.linear(constant, &parts)
 }
 
-/// The torque about a hinge: what the moments of both bodies have opposite to each other, along its axis. It is taken
-/// out of these.
-fn torque(pool: &mut Pool, tree: &Tree<'_>, forces: &mut [[Value; 2]], of: &Link) -> Id {
+/// The torque about a hinge, or the force along a slide: what the moments, or the forces, of both bodies have opposite to
+/// each other along its axis. It is taken out of these, with the moments of such a force.
+fn effort(pool: &mut Pool, tree: &Tree<'_>, forces: &mut [[Value; 2]], of: &Link) -> Id {
     let joint = &tree.joints[of.step.0];
-    // Of two axes that cross the second one is the child's.
-    let (body, frame) = if joint.kind == Kind::Universal && of.step.1 == 1 {
-        (Some(joint.child), &joint.frames[1])
-    } else {
-        (joint.parent, &joint.frames[0])
-    };
-    let axis = numbers::constant(pool, &numbers::column(frame, 2));
-    let axis = match body {
-        Some(body) => bodies::symbols(pool, &tree.bodies[body].axes).multiply(pool, &axis),
-        None => axis,
-    };
+    // The axis is written by the axes of either end; of two that cross each is on its own.
+    let ends = if joint.kind == Kind::Universal { of.step.1..of.step.1 + 1 } else { 0..2 };
+    let mut efforts = Vec::new();
+    for end in ends {
+        let axis = numbers::constant(pool, &numbers::column(&joint.frames[end], 2));
+        let axis = match [joint.parent, Some(joint.child)][end] {
+            Some(body) => bodies::symbols(pool, &tree.bodies[body].axes).multiply(pool, &axis),
+            None => axis,
+        };
+        efforts.extend(along(pool, tree, forces, of, (end, &axis)));
+    }
+    pool.sum(&efforts)
+}
+
+/// The efforts along an axis that is written by the axes of this end.
+fn along(
+    pool: &mut Pool,
+    tree: &Tree<'_>,
+    forces: &mut [[Value; 2]],
+    of: &Link,
+    (end, axis): (usize, &Value),
+) -> Vec<Id> {
+    let joint = &tree.joints[of.step.0];
+    let block = usize::from(of.freedom == Freedom::Slide);
     let lead = (0..3).find(|&k| !pool.is_zero(axis.0[k])).unwrap_or(0);
-    let terms = |pool: &Pool, id: Id| -> Vec<(Id, f64)> {
-        match pool.node(id) {
-            Node::Sum { terms, .. } => terms.iter().map(|(term, by)| (*term, by.value())).collect(),
-            Node::Number(_) => Vec::new(),
-            _ => vec![(id, 1.0)],
-        }
-    };
-    let mut torques = Vec::new();
-    for (term, by) in terms(pool, forces[joint.child][0].0[lead]) {
+    let mut efforts = Vec::new();
+    for (term, by) in flat(pool, forces[joint.child][block].0[lead]).1 {
         let effort = pool.div(term, axis.0[lead]);
         let effort = pool.scale(by, effort);
-        let all: Vec<Id> = axis.0.iter().map(|&part| pool.mul(effort, part)).collect();
-        let has = |pool: &mut Pool, moment: &Value, sign: f64| {
-            all.iter().zip(&moment.0).all(|(&part, &sum)| {
-                let wanted = pool.scale(sign, part);
-                let wanted = terms(pool, wanted);
-                wanted.iter().all(|one| terms(pool, sum).contains(one))
-            })
-        };
-        let on_parent = joint.parent.map(|parent| forces[parent][0].clone());
-        if !has(pool, &forces[joint.child][0].clone(), 1.0) || on_parent.is_some_and(|moment| !has(pool, &moment, -1.0))
-        {
+        let along = axis.multiply(pool, &Value::scalar(effort));
+        let back = along.negate(pool);
+        let is_opposite = joint.parent.is_none_or(|parent| has(pool, &forces[parent][block], &back));
+        if !has(pool, &forces[joint.child][block], &along) || !is_opposite {
             continue;
         }
-        torques.push(effort);
-        let all = Value(all);
-        let back = all.negate(pool);
-        forces[joint.child][0] = forces[joint.child][0].add(pool, &back);
+        efforts.push(effort);
+        forces[joint.child][block] = added(pool, &forces[joint.child][block], &back);
         if let Some(parent) = joint.parent {
-            forces[parent][0] = forces[parent][0].add(pool, &all);
+            forces[parent][block] = added(pool, &forces[parent][block], &along);
+        }
+        if of.freedom == Freedom::Slide {
+            take_moments(pool, tree, forces, (joint, end), &along);
         }
     }
-    pool.sum(&torques)
+    efforts
+}
+
+/// Takes the moments of a force out that acts on the child, and on the parent opposite to it, where the joint is on the
+/// other end than the one whose axes it has.
+fn take_moments(
+    pool: &mut Pool,
+    tree: &Tree<'_>,
+    forces: &mut [[Value; 2]],
+    (joint, end): (&Joint, usize),
+    force: &Value,
+) {
+    let ends = [joint.parent, Some(joint.child)];
+    let arm = |pool: &mut Pool, end: usize| match ends[end] {
+        Some(body) => bodies::symbols(pool, &tree.bodies[body].axes).multiply(pool, &joint.at[end]),
+        None => joint.at[end].clone(),
+    };
+    let other = 1 - end;
+    let own = arm(pool, other);
+    let place = |pool: &mut Pool, end: usize| match ends[end] {
+        Some(body) => bodies::symbols(pool, &tree.bodies[body].place),
+        None => Value::zero(pool, 3),
+    };
+    let (there, back) = (place(pool, other), place(pool, end).negate(pool));
+    let reach = there.add(pool, &own).add(pool, &back);
+    for (side, arm) in [(other, own), (end, reach)] {
+        let Some(body) = ends[side] else { continue };
+        // Less r x F on the child, less r x (-F) on the parent.
+        let sign = if side == 1 { -1.0 } else { 1.0 };
+        let moment = arm.cross(pool, force).scale(pool, sign);
+        forces[body][0] = added(pool, &forces[body][0], &moment);
+    }
+}
+
+/// The constant and the terms of a sum, those of sums among these as well.
+fn flat(pool: &Pool, id: Id) -> (f64, Vec<(Id, f64)>) {
+    match pool.node(id) {
+        Node::Number(number) => (number.value(), Vec::new()),
+        Node::Sum { constant, terms } => {
+            let mut all = (constant.value(), Vec::new());
+            for (term, by) in terms {
+                let (constant, terms) = flat(pool, *term);
+                all.0 += by.value() * constant;
+                all.1.extend(terms.into_iter().map(|(term, own)| (term, own * by.value())));
+            }
+            all
+        }
+        _ => (0.0, vec![(id, 1.0)]),
+    }
+}
+
+/// The sums of components, in which equal terms are one.
+fn added(pool: &mut Pool, a: &Value, b: &Value) -> Value {
+    let sum = |(&a, &b): (&Id, &Id)| {
+        let ((first, mut terms), (second, others)) = (flat(pool, a), flat(pool, b));
+        terms.extend(others);
+        pool.linear(first + second, &terms)
+    };
+    Value(a.0.iter().zip(&b.0).map(sum).collect())
+}
+
+/// Whether sums have these terms.
+fn has(pool: &Pool, sums: &Value, wanted: &Value) -> bool {
+    wanted.0.iter().zip(&sums.0).all(|(&part, &sum)| {
+        let all = flat(pool, sum).1;
+        flat(pool, part).1.iter().all(|one| all.contains(one))
+    })
 }

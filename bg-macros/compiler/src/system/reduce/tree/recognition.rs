@@ -14,7 +14,8 @@ use super::numbers::{self, Matrix, Vector};
 use crate::expr::{Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Slip, StateEquations};
-use crate::system::reduce::joined::{Choice, vanishes};
+use crate::system::reduce::joined::Choice;
+use crate::system::reduce::zero::vanishes;
 use crate::system::reduce::{closing, friction, is_constant};
 
 /// The joints of trees on the ground, parents first; `starts` has the values of the states at the start, for guesses.

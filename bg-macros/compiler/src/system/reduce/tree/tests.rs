@@ -206,6 +206,20 @@ fn a_floating_base_moves_as_its_bodies_do() {
     assert_eq!(put(&text).reduced.states.len(), 18 + 4);
 }
 
+/// What acts along slides, and is taken out of the forces and the moments of both bodies.
+#[test]
+fn forces_along_slides_are_those_of_the_bodies() {
+    let kinds = ["prismatic z", "revolute y", "<cylindrical x"].map(str::to_owned);
+    let loads = "drive push on j0 force = 3 - 20 * j0.travel; friction rub on j2 { coulomb 2; viscous 0.3; } drive turn on j2 torque = 0.2;";
+    let scene = put(&format!("{} {loads} {}", joined(&kinds, ""), observed(3, "d: m = j2.travel;")));
+    assert_eq!(scene.reduced.states.len(), 8, "{:?}", scene.left());
+    agrees(&scene);
+    let count = |loads: &str| operations(&put(&format!("{} {loads} {}", joined(&kinds, ""), observed(3, ""))));
+    let push =
+        "param p: N*s/rad = 3; drive push on j0 force = p * j1.speed; drive pull on j2 force = 2 * p * j1.speed;";
+    assert_eq!(count(push), count("") + 8);
+}
+
 /// Bodies that start turned and moving in their joints, beside their literal graph in a run.
 #[test]
 fn coordinates_start_where_the_bodies_do() {
