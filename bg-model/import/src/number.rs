@@ -2,6 +2,8 @@
 //!
 //! Out: twelve significant digits at most, so that 0.1 + 0.2 is 0.3; what is 1e-12 beside 1 is 0.
 
+use std::f64::consts::FRAC_PI_2;
+
 use nalgebra::{Matrix3, Vector3};
 
 /// A number.
@@ -76,7 +78,13 @@ fn factors(value: &Matrix3<f64>) -> Option<Vec<Factor>> {
 }
 
 fn product(factors: &[Factor]) -> String {
-    factors.iter().map(|(axis, angle)| format!("rotation_{axis}({})", number(*angle))).collect::<Vec<_>>().join(" * ")
+    factors.iter().map(|(axis, by)| format!("rotation_{axis}({})", angle(*by))).collect::<Vec<_>>().join(" * ")
+}
+
+/// An angle; quarter turns to all digits, so that sines and cosines are 0 and 1.
+fn angle(value: f64) -> String {
+    let quarters = (value / FRAC_PI_2).round() * FRAC_PI_2;
+    if quarters != 0.0 && (value - quarters).abs() < 1e-11 { format!("{quarters}") } else { number(value) }
 }
 
 /// Whether a rotation turns nothing.
@@ -128,6 +136,9 @@ mod tests {
         assert_eq!(text(&[("z", 0.4), ("x", 1.0)]).as_deref(), Some("rotation_z(0.4) * rotation_x(1)"));
         // Pitch of a right angle.
         let right = std::f64::consts::FRAC_PI_2;
-        assert_eq!(text(&[("y", right), ("x", 0.7)]).as_deref(), Some("rotation_y(1.57079632679) * rotation_x(0.7)"));
+        assert_eq!(
+            text(&[("y", right), ("x", 0.7)]).as_deref(),
+            Some("rotation_y(1.5707963267948966) * rotation_x(0.7)")
+        );
     }
 }

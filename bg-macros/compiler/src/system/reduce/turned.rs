@@ -39,6 +39,12 @@ pub(super) fn settle(equations: &mut StateEquations, proves: bool) {
     equations.projections.retain(|projection| !is_itself(projection));
 }
 
+/// The states that count turns, each with the sine and the cosine of its angle.
+pub(super) fn angles(equations: &mut StateEquations) -> Vec<(usize, [Id; 2])> {
+    let states: Vec<usize> = turns(equations).into_iter().map(|(state, _)| state).collect();
+    states.into_iter().filter_map(|state| Some((state, sine_and_cosine(equations, state)?))).collect()
+}
+
 /// The states that count turns, with the numbers of their angles.
 fn turns(equations: &StateEquations) -> Vec<(usize, usize)> {
     let states = equations.states.iter().enumerate();

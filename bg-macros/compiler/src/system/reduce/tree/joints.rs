@@ -104,6 +104,8 @@ pub(super) struct Joint {
     pub frames: [Matrix; 2],
     /// Where the joint is, in the axes of both, from their centres.
     pub at: [Value; 2],
+    /// The state that counts the turns of its angle, where that is the coordinate.
+    pub angle: Option<usize>,
 }
 
 /// The place and the speed of a step, with the cosine and the sine of an angle.
@@ -175,6 +177,7 @@ impl Joint {
             kind: Kind::Floating,
             frames: [ALONG; 2],
             at: [Value::zero(pool, 3), Value::zero(pool, 3)],
+            angle: None,
         }
     }
 

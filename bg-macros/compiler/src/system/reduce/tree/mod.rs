@@ -22,11 +22,13 @@ use super::report::{Fate, Report};
 use super::speeds::of_kind;
 use super::{closing, friction};
 use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, partial, substitute};
+use crate::system::Value;
 use crate::system::equations::{Kind, Origin, State, StateEquations};
 use bodies::{Body, velocity};
 use joints::{Freedom, Joint};
 use loads::{Loads, Tree};
 use motion::Motion;
+use recursion::Accelerations;
 
 /// Whether there is anything to look at: rows of rigid joints.
 pub(super) fn may_apply(equations: &StateEquations) -> bool {
@@ -40,6 +42,7 @@ pub(super) fn is_put(equations: &StateEquations) -> bool {
 
 /// Takes the bodies of trees of joints out of the equations; none where there are none, or something does not fit.
 pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option<()> {
+    equations.rewrite(&|pool, ids| numbers::folded(pool, ids));
     let bodies = bodies::of(equations);
     let literal = Literal::of(equations);
     let spins = places_of_spins(&mut equations.pool, &bodies);
@@ -57,6 +60,7 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     let Loads { moved, axes, ground } = Loads::of(equations, &tree, &coordinates);
     let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
     let found = recursion::accelerations(&mut equations.pool, &links, &moved, &motion.spins, &ground);
+    let found = linear(equations, found);
     let starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
     motion.energies(equations, &bodies, &seats);
     let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
@@ -107,6 +111,28 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     equations.replace(&|symbol| places.get(&symbol).copied());
     super::live::keep_states(equations, report, &kept);
     Some(())
+}
+
+/// The accelerations as sums over the reactions that are left, so that the matrix of these has parts of the rates.
+fn linear(equations: &mut StateEquations, of: Accelerations) -> Accelerations {
+    let StateEquations { pool, reactions, .. } = equations;
+    let multipliers: Vec<Symbol> = reactions.iter().map(|reaction| reaction.multiplier).collect();
+    let zero = pool.zero();
+    let mut written = |ids: &[Id]| -> Vec<Id> {
+        let alone = substitute(pool, ids, &|symbol| multipliers.contains(&symbol).then_some(zero));
+        let mut sums: Vec<Vec<Id>> = alone.into_iter().map(|id| vec![id]).collect();
+        for &multiplier in &multipliers {
+            let by = partial(pool, ids, multiplier);
+            let symbol = pool.symbol(multiplier);
+            for (sum, by) in sums.iter_mut().zip(by) {
+                sum.push(pool.mul(by, symbol));
+            }
+        }
+        sums.iter().map(|sum| pool.sum(sum)).collect()
+    };
+    let rates = written(&of.rates);
+    let links = of.links.iter().map(|link| [0, 1].map(|k| Value(written(&link[k].0)))).collect();
+    Accelerations { rates, links }
 }
 
 /// The names of a step's place and speed: with a number where a joint has several.

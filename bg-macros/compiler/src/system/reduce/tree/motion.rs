@@ -287,7 +287,10 @@ pub(super) fn starts(equations: &mut StateEquations, bodies: &[Body], joint: &Jo
     let third = |of: &Value| Value(numbers::column(&of.0.clone().try_into().expect("nine entries"), 2).to_vec());
     let (axis, last) = (third(&first), third(&second));
     let turn = |pool: &mut Pool, sine: usize, cosine: usize, axis: &Value| {
-        let angle = pool.call(Function::Atan2, &[turned[sine], turned[cosine]]);
+        let angle = match joint.angle {
+            Some(state) => states[state].start,
+            None => pool.call(Function::Atan2, &[turned[sine], turned[cosine]]),
+        };
         [angle, axis.dot(pool, &turning)]
     };
     let slide = |pool: &mut Pool| {

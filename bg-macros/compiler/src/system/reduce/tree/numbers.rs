@@ -83,6 +83,7 @@ pub(super) fn folded(pool: &mut Pool, ids: &[Id]) -> Vec<Id> {
     });
     let calls: Vec<Id> = calls.collect();
     let values = evaluate(pool, &calls, &Environment::default());
-    let places: BTreeMap<Id, Id> = calls.into_iter().zip(values).map(|(id, value)| (id, pool.number(value))).collect();
+    let places: BTreeMap<Id, Id> =
+        calls.into_iter().zip(values).map(|(id, value)| (id, pool.number(cleaned(&[value])[0]))).collect();
     exchange(pool, ids, &places)
 }

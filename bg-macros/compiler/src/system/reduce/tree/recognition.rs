@@ -16,7 +16,7 @@ use crate::system::Value;
 use crate::system::equations::{Slip, StateEquations};
 use crate::system::reduce::joined::Choice;
 use crate::system::reduce::zero::vanishes;
-use crate::system::reduce::{closing, friction, is_constant};
+use crate::system::reduce::{closing, friction, is_constant, turned};
 
 /// The joints of trees on the ground, parents first; `starts` has the values of the states at the start, for guesses.
 pub(super) fn of(equations: &mut StateEquations, bodies: &[Body], starts: &Environment<'_>) -> Vec<Joint> {
@@ -90,11 +90,14 @@ struct Given<'a> {
     by_momenta: BTreeMap<Symbol, Id>,
     /// The states in whose rates each multiplier is.
     loaded: BTreeMap<Symbol, Vec<usize>>,
+    /// The states that count turns, with sine and cosine.
+    angles: Vec<(usize, [Id; 2])>,
     starts: &'a Environment<'a>,
 }
 
 impl<'a> Given<'a> {
     fn new(equations: &mut StateEquations, bodies: &[Body], starts: &'a Environment<'a>) -> Self {
+        let angles = turned::angles(equations);
         let StateEquations { pool, states, .. } = equations;
         let (mut owner, mut speeds) = (BTreeMap::new(), BTreeMap::new());
         let (mut by_velocities, mut by_momenta) = (BTreeMap::new(), BTreeMap::new());
@@ -118,7 +121,7 @@ impl<'a> Given<'a> {
                 loaded.entry(multiplier).or_default().push(index);
             }
         }
-        Self { owner, speeds, by_velocities, by_momenta, loaded, starts }
+        Self { owner, speeds, by_velocities, by_momenta, loaded, angles, starts }
     }
 }
 
@@ -152,12 +155,54 @@ fn joint(
     };
     let of_translations: Vec<Id> = translations.iter().map(|&row| gaps[row]).collect();
     let at = points(pool, ends, (&of_translations, &along))?;
-    let joint = Joint { name, rows, parent, child, kind, frames: axes, at };
+    let joint = Joint { name, rows, parent, child, kind, frames: axes, at, angle: None };
+    let joint = by_its_angle(pool, bodies, joint, &given.angles);
     let is_proved = holds(equations, bodies, &joint, (&flows, &gaps))
         && starts_so(equations, bodies, &joint, given)
         && works_not(equations, &joint, (&flows, given));
     is_proved.then_some(joint)
 }
+
+/// The joint with the angle that is counted of it as its coordinate, where that takes quarter turns of its axes.
+fn by_its_angle(pool: &mut Pool, bodies: &[Body], mut joint: Joint, angles: &[(usize, [Id; 2])]) -> Joint {
+    if !matches!(joint.kind, Kind::Revolute | Kind::Cylindrical) {
+        return joint;
+    }
+    let probe = Probe::new(pool, 6 * bodies.len());
+    let unit = Value::identity(pool);
+    let images = joint.motion(pool, bodies, &probe.moves, Some(&unit));
+    let step = joint.steps().len() - 1;
+    let [_, cosine, sine, _] = probe.symbols[step];
+    for &(state, of) in angles {
+        let of = numbers::folded(pool, &of);
+        let seen = substitute(pool, &of, &|symbol| images.get(&symbol).copied());
+        if pool.symbols(&seen).into_iter().any(|symbol| symbol != cosine && symbol != sine) {
+            continue;
+        }
+        let at = |pool: &mut Pool, values: [f64; 2]| -> Option<Vec<f64>> {
+            let [c, s] = values.map(|value| pool.number(value));
+            let put = |symbol: Symbol| [(cosine, c), (sine, s)].into_iter().find(|(own, _)| *own == symbol);
+            let ids = substitute(pool, &seen, &|symbol| put(symbol).map(|(_, id)| id));
+            ids.into_iter().map(|id| pool.as_number(id)).collect()
+        };
+        let (Some(start), Some(quarter)) = (at(pool, [1.0, 0.0]), at(pool, [0.0, 1.0])) else { continue };
+        let [start, quarter] = [start, quarter].map(|of| numbers::cleaned(&[of[0], of[1]]));
+        // The angle is d + q, or d - q; both ends are turned upside down then.
+        let direction = start[1] * quarter[0] - start[0] * quarter[1];
+        if start.iter().all(|part| part.fract() == 0.0) && direction.abs() == 1.0 {
+            let over = if direction < 0.0 { [1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0] } else { UNIT };
+            let [s, c] = start;
+            let turn = [c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0];
+            joint.frames = joint.frames.map(|frame| numbers::product(&frame, &over));
+            joint.frames[1] = numbers::product(&joint.frames[1], &turn);
+            joint.angle = Some(state);
+            return joint;
+        }
+    }
+    joint
+}
+
+const UNIT: Matrix = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
 /// A body at both ends of a joint; the ground where there is none.
 type Ends<'a> = [Option<&'a Body>; 2];
@@ -169,7 +214,7 @@ fn at_start(pool: &Pool, ids: &[Id], starts: &Environment<'_>) -> Vector {
 
 /// A body's axes at the start.
 fn turned(body: Option<&Body>, starts: &Environment<'_>) -> Matrix {
-    body.map_or([1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0], |body| body.axes.map(|state| starts.states[state]))
+    body.map_or(UNIT, |body| body.axes.map(|state| starts.states[state]))
 }
 
 /// A vector in a body's axes at the start.
