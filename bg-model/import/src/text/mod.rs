@@ -433,10 +433,12 @@ impl Writer<'_> {
         }
     }
 
-    /// Of compliant joints: the same with rigid ones.
+    /// Of rigid joints the model itself, of compliant ones the same with rigid ones.
     fn scene(&self, graph: &str) -> String {
         if !self.options.compliant {
-            return String::new();
+            let is_jointed = self.robot.joints.iter().any(|joint| joint.kind != Kind::Free);
+            let scene = || format!("scenes only;\n\n/// In the coordinates of its joints.\nscene {graph} {{}}\n");
+            return is_jointed.then(scene).unwrap_or_default();
         }
         let joints = if self.robot.loops.is_empty() {
             "joints;".to_owned()

@@ -13,7 +13,7 @@ use super::report::Fate;
 use super::speeds::of_kind;
 use super::zero::{ROUNDING, value, vanishes};
 use super::{angle, friction};
-use crate::expr::{Circles, Environment, Id, Pool, Symbol, derivative, evaluate, partial, same_polynomial, substitute};
+use crate::expr::{Circles, Id, Pool, Symbol, derivative, partial, same_polynomial, substitute};
 use crate::system::equations::{Kind, Origin, StateEquations};
 
 /// Solved rows and what they determine.

@@ -15,6 +15,7 @@ mod motion;
 mod numbers;
 mod recognition;
 mod recursion;
+mod relative;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,6 +30,7 @@ use joints::{Freedom, Joint};
 use loads::{Loads, Tree};
 use motion::Motion;
 use recursion::Accelerations;
+use relative::Coordinated;
 
 /// Whether there is anything to look at: rows of rigid joints.
 pub(super) fn may_apply(equations: &StateEquations) -> bool {
@@ -54,7 +56,8 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     literal.keep_mobilities(equations);
     let first = 6 * bodies.len() + joints::PROBES;
     let coordinates = motion::coordinates(&mut equations.pool, first, &joints);
-    motion::recognise(equations, &bodies, &joints, &coordinates);
+    let coordinated = Coordinated { bodies: &bodies, joints: &joints, coordinates: &coordinates };
+    relative::recognise(equations, coordinated);
     let (links, seats) = links::of(&mut equations.pool, &bodies, &joints);
     let tree = Tree { bodies: &bodies, joints: &joints, links: &links, seats: &seats };
     let Loads { moved, axes, ground } = Loads::of(equations, &tree, &coordinates);

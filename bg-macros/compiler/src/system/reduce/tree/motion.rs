@@ -1,18 +1,17 @@
 //! Poses, velocities and energies of bodies by the coordinates of joints.
 //!
-//! In: bodies, links. Out: an expression for each state and velocity of a body; what reads two bodies by their relative
-//! motion alone written by the joint between them. Method of the latter: such a node is the same whatever the pose and
-//! the motion of the parent are; it is proved for a rotation of four symbols, by the polynomial identity.
+//! In: bodies, links with their moves. Out: an expression for each state and velocity of a body, the rates of momenta
+//! that bodies keep, kinetic energies, starts.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, symbols, velocity};
-use super::joints::{Freedom, Joint, Kind, Moves, Probe};
+use super::joints::{Freedom, Joint, Kind, Moves};
 use super::links::{Link, Seat};
 use super::loads::Tree;
 use super::numbers;
 use super::recursion::{Accelerations, Moved, down, rate_of_angular, spins};
-use crate::expr::{Function, Id, Node, Pool, Symbol, children, exchange, same_polynomial, substitute};
+use crate::expr::{Function, Id, Pool, Symbol, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
 
@@ -32,70 +31,6 @@ pub(super) fn coordinates(pool: &mut Pool, first: usize, joints: &[Joint]) -> Ve
         Moves { place, cosine, sine, speed }
     };
     joints.iter().map(|joint| joint.steps().iter().map(|step| moves(pool, step.freedom)).collect()).collect()
-}
-
-/// The bodies that a node reads; none where it reads something else or many.
-type Reads = Option<BTreeSet<usize>>;
-
-/// Writes what reads two bodies by their relative motion alone by the joint between them.
-pub(super) fn recognise(equations: &mut StateEquations, bodies: &[Body], joints: &[Joint], coordinates: &[Vec<Moves>]) {
-    let mut owner: BTreeMap<Symbol, usize> = BTreeMap::new();
-    for (index, body) in bodies.iter().enumerate() {
-        owner.extend((0..6).map(|k| (velocity(index, k), index)));
-        let states = body.place.iter().chain(&body.axes);
-        owner.extend(states.map(|&state| (Symbol::state(state), index)));
-    }
-    equations.rewrite(&|pool, ids| {
-        let mut reads: BTreeMap<Id, Reads> = BTreeMap::new();
-        let mut found: BTreeMap<BTreeSet<usize>, Vec<Id>> = BTreeMap::new();
-        for id in pool.reachable(ids) {
-            let own = match pool.node(id) {
-                Node::Number(_) => Some(BTreeSet::new()),
-                Node::Symbol(symbol) => owner.get(symbol).map(|&body| BTreeSet::from([body])),
-                Node::Select { .. } => None,
-                node => children(node).try_fold(BTreeSet::new(), |mut all, child| {
-                    all.extend(reads[&child].as_ref()?.iter().copied());
-                    (all.len() <= 2).then_some(all)
-                }),
-            };
-            if let Some(own) = own.as_ref().filter(|own| own.len() == 2)
-                && matches!(pool.node(id), Node::Sum { .. })
-            {
-                found.entry(own.clone()).or_default().push(id);
-            }
-            reads.insert(id, own);
-        }
-        let mut places = BTreeMap::new();
-        for (joint, own) in joints.iter().zip(coordinates) {
-            let Some(parent) = joint.parent else { continue };
-            let Some(nodes) = found.get(&BTreeSet::from([parent, joint.child])) else { continue };
-            let probe = Probe::new(pool, 6 * bodies.len());
-            let rotation = probe.rotation.clone();
-            let unit = Value::identity(pool);
-            let anyhow = joint.motion(pool, bodies, &probe.moves, Some(&rotation));
-            let mut still = joint.motion(pool, bodies, &probe.moves, Some(&unit));
-            let zero = pool.zero();
-            let at_rest = bodies[parent].place.iter().map(|&state| Symbol::state(state));
-            let at_rest: Vec<Symbol> = at_rest.chain((0..6).map(|k| velocity(parent, k))).collect();
-            for image in still.values_mut() {
-                *image = substitute(pool, &[*image], &|symbol| at_rest.contains(&symbol).then_some(zero))[0];
-            }
-            still.extend(at_rest.iter().map(|&symbol| (symbol, zero)));
-            let by = |symbol: Symbol| {
-                let (moves, symbols) = own.iter().zip(&probe.symbols).find(|(_, of)| of.contains(&symbol))?;
-                let ids = [moves.place, moves.cosine, moves.sine, moves.speed];
-                symbols.iter().position(|&other| other == symbol).map(|k| ids[k])
-            };
-            for &node in nodes {
-                let simple = substitute(pool, &[node], &|symbol| still.get(&symbol).copied())[0];
-                let any = substitute(pool, &[node], &|symbol| anyhow.get(&symbol).copied())[0];
-                if pool.cost(&[simple]) < pool.cost(&[node]) && same_polynomial(pool, simple, any) {
-                    places.insert(node, substitute(pool, &[simple], &by)[0]);
-                }
-            }
-        }
-        exchange(pool, ids, &places)
-    });
 }
 
 /// The axes of a link in inertial axes, from those of the links before it.
