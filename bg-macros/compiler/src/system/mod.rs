@@ -4,7 +4,6 @@
 
 pub mod equations;
 pub mod jacobian;
-pub mod magnitude;
 pub mod projection;
 pub mod reduce;
 pub mod requirements;

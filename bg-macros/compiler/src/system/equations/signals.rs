@@ -13,7 +13,7 @@ use super::memo::{Entry, Memo};
 use super::solving::Pivot;
 use super::unknowns::{Unknown, Unknowns};
 use super::{FallibleLaw, Gap, Holding, Impacts, Kind, Origin, Output, State, StateEquations, Switch, storage, text};
-use crate::expr::{Id, Pool, Symbol, substitute};
+use crate::expr::{Id, Pool, Symbol, magnitudes, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::units::Dimension;
 use crate::graph::{
@@ -21,7 +21,6 @@ use crate::graph::{
 };
 use crate::system::Value;
 use crate::system::equations::solution::Solution;
-use crate::system::magnitude::magnitudes;
 
 /// The states of a storage.
 #[derive(Clone, Debug)]

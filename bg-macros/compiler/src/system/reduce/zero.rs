@@ -5,9 +5,8 @@
 //! drawn at random: an analytic function that is zero at them is zero everywhere, but for a set of places of measure
 //! zero (Schwartz, Journal of the ACM 27, 1980, for polynomials).
 
-use crate::expr::{Environment, Function, Id, Node, Pool, Symbol, evaluate, same_polynomial};
+use crate::expr::{Environment, Function, Id, Node, Pool, Symbol, evaluate, magnitudes, same_polynomial};
 use crate::random::Random;
-use crate::system::magnitude::magnitudes;
 
 /// A gap at the start below it is rounding of the numbers that place the bodies, m.
 pub(super) const ROUNDING: f64 = 1e-12;

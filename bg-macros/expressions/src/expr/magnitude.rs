@@ -5,9 +5,10 @@
 
 use std::collections::BTreeMap;
 
-use crate::expr::{Function, Id, Node, Pool};
+use super::{Function, Id, Node, Pool};
 
 /// The magnitudes of these expressions.
+#[must_use]
 pub fn magnitudes(pool: &mut Pool, of: &[Id]) -> Vec<Id> {
     let mut known = BTreeMap::new();
     // In ascending order: what an expression consists of comes first.
