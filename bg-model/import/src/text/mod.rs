@@ -437,7 +437,7 @@ impl Writer<'_> {
     fn scene(&self, graph: &str) -> String {
         if !self.options.compliant {
             let is_jointed = self.robot.joints.iter().any(|joint| joint.kind != Kind::Free);
-            let scene = || format!("scenes only;\n\n/// In the coordinates of its joints.\nscene {graph} {{}}\n");
+            let scene = || format!("scenes only;\n/// In the coordinates of its joints.\nscene {graph} {{}}\n");
             return is_jointed.then(scene).unwrap_or_default();
         }
         let joints = if self.robot.loops.is_empty() {

@@ -37,7 +37,7 @@ bond_graph! {
             center [0.2, 0.0229111434507, 0.0270888565493];
             inertia [[0.00374701812062, 4.06914788456e-5, -0.00372420062382], [4.06914788456e-5, 0.0174413271978, 0.00120249341807], [-0.00372420062382, 0.00120249341807, 0.016469585563]];
             point swing = [0.01, 0.02, 0] turned rotation_x(-0.785398163397);
-            point hook = [0.4, 0, 0.1] turned rotation_z(1.57079632679) * rotation_x(0.19739555985);
+            point hook = [0.4, 0, 0.1] turned rotation_z(1.5707963267948966) * rotation_x(0.19739555985);
             start at jib_place; start turned jib_turned;
         }
         joint swing: revolute z (trolley.swing -> jib.swing) { rigid; }
@@ -45,7 +45,7 @@ bond_graph! {
         I swing_rotor = 0.03; swing.spin -> swing_rotor;
         stop swing_stop on swing { at least -2.96705972839; at most 2.96705972839; restitution 0; start swing_start; }
 
-        let load_turned: 1 = jib_turned * rotation_z(1.57079632679) * rotation_x(0.19739555985);
+        let load_turned: 1 = jib_turned * rotation_z(1.5707963267948966) * rotation_x(0.19739555985);
         let load_place: m = jib_place + jib_turned * [0.4, 0, 0.1];
         body load {
             mass 0.8;
@@ -66,5 +66,9 @@ bond_graph! {
             swing: rad = swing.angle;
             energy: J = stored_energy + potential;
         }
+
+        scenes only;
+        /// In the coordinates of its joints.
+        scene Crane {}
     }
 }

@@ -29,13 +29,13 @@ bond_graph! {
             center [0.02, -0.01, -0.2];
             inertia [[0.0278317702868, 0.00231946894548, -0.0011031695984], [0.00231946894548, 0.0258902811135, 0.00959832903276], [-0.0011031695984, 0.00959832903276, 0.0102779485996]];
             point shoulder = [0, 0, 0] turned rotation_z(1.03037682652) * rotation_y(0.629839533948);
-            point elbow = [0.01, 0.02, -0.4] turned rotation_z(0.2) * rotation_x(1.57079632679);
+            point elbow = [0.01, 0.02, -0.4] turned rotation_z(0.2) * rotation_x(1.5707963267948966);
             start at upper_arm_place; start turned upper_arm_turned;
         }
         joint shoulder: revolute z (ground.shoulder -> upper_arm.shoulder) { rigid; }
         R shoulder_bearing = 0.05; shoulder.spin -> shoulder_bearing;
 
-        let forearm_turned: 1 = upper_arm_turned * rotation_z(0.2) * rotation_x(1.57079632679) * rotation_y(-elbow_start);
+        let forearm_turned: 1 = upper_arm_turned * rotation_z(0.2) * rotation_x(1.5707963267948966) * rotation_y(-elbow_start);
         let forearm_place: m = upper_arm_place + upper_arm_turned * [0.01, 0.02, -0.4];
         body forearm {
             mass 1.6;
@@ -55,5 +55,9 @@ bond_graph! {
             elbow: rad = elbow.angle;
             energy: J = stored_energy + potential;
         }
+
+        scenes only;
+        /// In the coordinates of its joints.
+        scene DoublePendulum {}
     }
 }

@@ -111,5 +111,9 @@ bond_graph! {
             float_position: m = float.origin.position;
             energy: J = stored_energy + potential;
         }
+
+        scenes only;
+        /// In the coordinates of its joints.
+        scene Features {}
     }
 }

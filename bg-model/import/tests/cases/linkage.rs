@@ -176,5 +176,9 @@ bond_graph! {
             ball_position: m = ball.origin.position;
             energy: J = stored_energy + potential;
         }
+
+        scenes only;
+        /// In the coordinates of its joints.
+        scene FourBar {}
     }
 }

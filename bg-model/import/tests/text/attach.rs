@@ -36,7 +36,7 @@ fn a_body_comes_with_its_names_classes_and_drives() {
     let imported = made("attach_body", CHILD, "<attach model='c' body='arm' prefix='p_'/>").expect("a robot");
     let words = [
         // The frame around it is left behind; its angle is in radians, the range of `b` in degrees.
-        "point p_j = [1, 0, 0] turned rotation_z(1.57079632679);",
+        "point p_j = [1, 0, 0] turned rotation_z(1.5707963267948966);",
         "at least -1.57079632679; at most 1.57079632679;",
         "at least -1; at most 1;",
         // The class of the body around `p_arm` is that of the other model.

@@ -466,7 +466,7 @@ fn frames_and_copies_are_written_out() {
     let imported = made(text);
     // MuJoCo 4.0: the body at (1, 2, 0), its second joint at (0, 1, 1), its mass at (0.5, 0, 1).
     for words in [
-        "= [1, 2, 0] turned rotation_z(1.57079632679)",
+        "= [1, 2, 0] turned rotation_z(1.5707963267948966)",
         "[0, 1, 1]",
         "mass 35.6047167407;\n            center [0.5, 0, 1];",
     ] {
