@@ -326,8 +326,7 @@ fn holds(equations: &mut StateEquations, bodies: &[Body], joint: &Joint, (flows,
     let images = joint.motion(pool, bodies, &probe.moves, Some(&rotation));
     let all: Vec<Id> = flows.iter().chain(gaps).copied().collect();
     let found = substitute(pool, &all, &|symbol| images.get(&symbol).copied());
-    let zero = pool.zero();
-    if !found.into_iter().all(|id| same_polynomial(pool, id, zero)) {
+    if !found.into_iter().all(|id| vanishes(pool, id)) {
         return false;
     }
     let unit = Value::identity(pool);
