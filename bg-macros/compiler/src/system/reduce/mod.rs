@@ -24,7 +24,7 @@ mod turned;
 mod zero;
 
 use crate::expr::{Branch, Id, Node, Pool, Symbol};
-use crate::system::equations::{Origin, StateEquations};
+use crate::system::equations::StateEquations;
 
 pub use reaction::solve as solve_reactions;
 pub use report::{Count, Fate, Kept, Report};
@@ -126,30 +126,31 @@ pub fn for_scene(
     let mut report = Report::new(&equations);
     report.count("literal", equations.states.len(), operations(&mut equations));
     run(&PARAMETERS, &mut equations, wanted, &mut report, operations);
-    let by_tree = in_joint_coordinates(&equations, wanted, &report, operations);
+    let by_tree = match in_joint_coordinates(&equations, wanted, &report, operations) {
+        Some(Jointed { equations, report, is_long: true }) => return (equations, report),
+        by_tree => by_tree,
+    };
     run(&STATES, &mut equations, wanted, &mut report, operations);
-    if let Some((changed, told)) = &by_tree
-        && is_long(changed, &equations)
-    {
-        return (changed.clone(), told.clone());
-    }
     run(&JOINTS, &mut equations, wanted, &mut report, operations);
     match by_tree {
-        Some((changed, told)) if cost(&changed, &told) < cost(&equations, &report) => (changed, told),
+        Some(by_tree) if cost(&by_tree.equations, &by_tree.report) < cost(&equations, &report) => {
+            (by_tree.equations, by_tree.report)
+        }
         _ => (equations, report),
     }
 }
 
-/// Whether the hinges of `changed` are so many that the matrix of all reactions of `equations`, whose bodies keep all
-/// their states, takes seconds and more to factor.
-fn is_long(changed: &StateEquations, equations: &StateEquations) -> bool {
-    let hinges = changed.states.iter().filter(|state| matches!(state.origin, Origin::Hinge(..))).count();
-    hinges > SHORT && equations.states.len() >= KEPT * hinges
+/// What is reduced with trees of joints by their coordinates.
+struct Jointed {
+    equations: StateEquations,
+    report: Report,
+    /// Whether more than a few joints move in space, as none of their coordinates is constant: the matrix of all reactions
+    /// of bodies that keep their states would take seconds and more to factor.
+    is_long: bool,
 }
 
-/// More hinges are not compared with the matrix of all reactions, where bodies keep at least so many states each.
+/// So many coordinates are compared with the matrix of all reactions.
 const SHORT: usize = 4;
-const KEPT: usize = 14;
 
 /// Runs these reductions, where they apply.
 fn run(
@@ -167,22 +168,24 @@ fn run(
     }
 }
 
-/// The reduced equations with bodies on hinges by the hinges' angles, where there are such.
+/// The reduced equations with bodies on trees of joints by the joints' coordinates, where there are such.
 fn in_joint_coordinates(
     equations: &StateEquations,
     wanted: &Wanted,
     report: &Report,
     operations: &mut Operations<'_>,
-) -> Option<(StateEquations, Report)> {
+) -> Option<Jointed> {
     if !wanted.speeds || !wanted.links.is_empty() || !tree::may_apply(equations) {
         return None;
     }
-    let (mut changed, mut told) = (equations.clone(), report.clone());
-    tree::put(&mut changed, &mut told)?;
-    told.count("hinges by their angles", changed.states.len(), operations(&mut changed));
-    run(&STATES, &mut changed, wanted, &mut told, operations);
-    run(&JOINTS, &mut changed, wanted, &mut told, operations);
-    Some((changed, told))
+    let (mut equations, mut report) = (equations.clone(), report.clone());
+    tree::put(&mut equations, &mut report)?;
+    report.count("joints by their coordinates", equations.states.len(), operations(&mut equations));
+    let all = tree::speeds(&equations);
+    run(&STATES, &mut equations, wanted, &mut report, operations);
+    let is_long = all > SHORT && tree::speeds(&equations) == all;
+    run(&JOINTS, &mut equations, wanted, &mut report, operations);
+    Some(Jointed { equations, report, is_long })
 }
 
 /// The operations of a rate, a sine or cosine as many as it takes.

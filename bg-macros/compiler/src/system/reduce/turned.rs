@@ -46,7 +46,7 @@ pub(super) fn angles(equations: &mut StateEquations) -> Vec<(usize, [Id; 2])> {
 }
 
 /// The states that count turns, with the numbers of their angles.
-fn turns(equations: &StateEquations) -> Vec<(usize, usize)> {
+pub(super) fn turns(equations: &StateEquations) -> Vec<(usize, usize)> {
     let states = equations.states.iter().enumerate();
     states.filter_map(|(k, state)| if let Origin::Turn(turn) = state.origin { Some((k, turn)) } else { None }).collect()
 }

@@ -21,12 +21,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::report::{Fate, Report};
 use super::speeds::of_kind;
-use super::{closing, friction};
+use super::{closing, friction, turned};
 use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, partial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Kind, Origin, State, StateEquations};
 use bodies::{Body, velocity};
-use joints::{Freedom, Joint};
+use joints::{Freedom, Joint, Moves};
 use loads::{Loads, Tree};
 use motion::Motion;
 use recursion::Accelerations;
@@ -35,6 +35,11 @@ use relative::Coordinated;
 /// Whether there is anything to look at: rows of rigid joints.
 pub(super) fn may_apply(equations: &StateEquations) -> bool {
     equations.baumgarte.is_none() && friction::rigid(&equations.reactions) > 0
+}
+
+/// How many speeds of joints are states.
+pub(super) fn speeds(equations: &StateEquations) -> usize {
+    equations.states.iter().filter(|state| matches!(state.origin, Origin::Speed(..))).count()
 }
 
 /// Whether it has been done.
@@ -81,6 +86,11 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
             report.say(state, Fate::Joined(joint.name.clone()));
         }
     }
+    for (state, turn, (name, place)) in counted(equations, &joints, &coordinates) {
+        kept[state] = false;
+        report.say(state, Fate::Equal(name));
+        images.extend([(Symbol::state(state), place), (turn, equations.pool.zero())]);
+    }
     let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
     for (link, (own, &rate)) in links.iter().zip(moved.iter().zip(&found.rates)) {
         if !link.freedom.has_coordinate() {
@@ -109,7 +119,7 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
             places.insert(symbol, equations.pool.symbol(Symbol::state(state)));
         }
     }
-    equations.projections.retain(|(state, _)| !given.contains(state));
+    equations.projections.retain(|(state, _)| kept[*state] && !given.contains(state));
     equations.replace(&|symbol| images.get(&symbol).copied());
     equations.replace(&|symbol| places.get(&symbol).copied());
     super::live::keep_states(equations, report, &kept);
@@ -136,6 +146,23 @@ fn linear(equations: &mut StateEquations, of: Accelerations) -> Accelerations {
     let rates = written(&of.rates);
     let links = of.links.iter().map(|link| [0, 1].map(|k| Value(written(&link[k].0)))).collect();
     Accelerations { rates, links }
+}
+
+/// The states that count the turns of a joint's angle and are its coordinate, which starts as they do and has their
+/// rate: each with the symbol of the small angle that is left of it, zero then, and the coordinate.
+fn counted(
+    equations: &StateEquations,
+    joints: &[Joint],
+    coordinates: &[Vec<Moves>],
+) -> Vec<(usize, Symbol, (String, Id))> {
+    let turns: BTreeMap<usize, usize> = turned::turns(equations).into_iter().collect();
+    let of_joint = |(joint, moves): (&Joint, &Vec<Moves>)| {
+        let (state, moves) = (joint.angle?, moves.last()?);
+        let is_it = equations.states[state].rate == moves.speed;
+        let [name, _] = names(joint, joint.steps().len() - 1);
+        is_it.then(|| (state, Symbol::numbered(Symbol::Turned, turns[&state]), (name, moves.place)))
+    };
+    joints.iter().zip(coordinates).filter_map(of_joint).collect()
 }
 
 /// The names of a step's place and speed: with a number where a joint has several.

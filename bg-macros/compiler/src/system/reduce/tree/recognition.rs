@@ -9,7 +9,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, velocity};
-use super::joints::{Joint, Kind, Probe, STEPS};
+use super::joints::{Joint, Kind, Moves, Probe, STEPS};
 use super::numbers::{self, Matrix, Vector};
 use crate::expr::{Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute};
 use crate::system::Value;
@@ -193,9 +193,17 @@ fn by_its_angle(pool: &mut Pool, bodies: &[Body], mut joint: Joint, angles: &[(u
             let over = if direction < 0.0 { [1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, -1.0] } else { UNIT };
             let [s, c] = start;
             let turn = [c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0];
-            joint.frames = joint.frames.map(|frame| numbers::product(&frame, &over));
-            joint.frames[1] = numbers::product(&joint.frames[1], &turn);
-            joint.angle = Some(state);
+            let mut aligned = joint.clone();
+            aligned.frames = aligned.frames.map(|frame| numbers::product(&frame, &over));
+            aligned.frames[1] = numbers::product(&aligned.frames[1], &turn);
+            let images = aligned.motion(pool, bodies, &probe.moves, Some(&probe.rotation));
+            let seen = substitute(pool, &of, &|symbol| images.get(&symbol).copied());
+            let Moves { cosine, sine, .. } = probe.moves[step];
+            if !same_polynomial(pool, seen[0], sine) || !same_polynomial(pool, seen[1], cosine) {
+                continue;
+            }
+            aligned.angle = Some(state);
+            joint = aligned;
             return joint;
         }
     }

@@ -325,7 +325,7 @@ fn put(statements: &str) -> Scene {
         let one = equations.pool.one();
         equations.replace(&|symbol| matches!(symbol, Symbol::Kept(_)).then_some(one));
     }
-    report.count("hinges by their angles", reduced.states.len(), crate::program::rate_operations(&mut reduced));
+    report.count("joints by their coordinates", reduced.states.len(), crate::program::rate_operations(&mut reduced));
     Scene { literal, tuned: vec![false; reduced.parameters.len()], reduced, report }
 }
 
