@@ -9,7 +9,6 @@ use bg_model::dynamics::Machine;
 use bg_model::input::Input;
 use bg_model::mechanism::{Mechanism, ModelVisitor};
 use bg_model::nalgebra::SVector;
-use bg_model::parameters::Parameters;
 use bg_model::scalar::Dual;
 use bg_model::system::{Model, switches, values};
 
