@@ -1,5 +1,5 @@
 //! What documents say of files: links lead somewhere, files that are named are there, tables list the modules of their
-//! folders, decisions are short. That each mutant has its place in the code.
+//! folders, decisions are short. That each mutant has its place in the code, and that all workspaces have the same versions.
 
 mod markdown;
 
@@ -206,6 +206,39 @@ fn suites_are_listed() {
     // Not one of cargo's: a script that runs the others on changed code.
     let scripts = ["mutants/".to_owned()];
     assert_eq!(listed, suites.map(|(name, _)| format!("{name}/")).chain(scripts).collect());
+}
+
+/// Name, version and lock of each package of all workspaces here.
+fn locked() -> Vec<(String, String, PathBuf)> {
+    let ignored = ["bg-model/python", "bg-model/workbench/template"].map(|folder| root().join(folder));
+    let is_lock =
+        |path: &PathBuf| path.ends_with("Cargo.lock") && !ignored.iter().any(|folder| path.starts_with(folder));
+    let of_one = |path: PathBuf| {
+        let lock: toml::Table = read(&path).parse().expect("a lock is TOML");
+        let packages = lock["package"].as_array().expect("a list").clone().into_iter();
+        let text = |package: &toml::Value, key: &str| package[key].as_str().expect("text").to_owned();
+        packages.map(move |package| (text(&package, "name"), text(&package, "version"), path.clone()))
+    };
+    files(&root()).into_iter().filter(is_lock).flat_map(of_one).collect()
+}
+
+/// The versions that can stand for each other begin with these numbers.
+fn compatible(version: &str) -> Vec<&str> {
+    let numbers: Vec<&str> = version.split('.').collect();
+    let count = if numbers[0] == "0" { 2 } else { 1 };
+    numbers[..count].to_vec()
+}
+
+/// All workspaces here have one target folder in `.ci/run`: with other versions the compiler is built once more for each.
+#[test]
+fn workspaces_have_the_same_versions() {
+    let locked = locked();
+    for (name, version, path) in &locked {
+        let other = locked
+            .iter()
+            .find(|(other, of, _)| other == name && compatible(of) == compatible(version) && of != version);
+        assert_eq!(other, None, "{name} {version} in {}", path.display());
+    }
 }
 
 /// What a mutant replaces occurs once, so that the script that breaks the code breaks what it says.

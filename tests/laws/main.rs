@@ -1,44 +1,34 @@
 //! Laws that hold for every model: the power balance at any state, and that the order of declaration changes nothing.
 
 use bg_model::input::Input;
-use bg_model::scalar::Dual;
-use bg_model::system::Model;
 use bond_graph_tests::each_example;
 use bond_graph_tests::models;
+use bond_graph_tests::support::example::{Example, examples};
 use bond_graph_tests::support::power::{Draw, imbalance, state};
 use bond_graph_tests::support::record::{Record, instants, record};
 
 /// What rounding leaves of the balance, relative to the sum of all powers' magnitudes.
 const ROUNDING: f64 = 1e-14;
 
-fn balance<A, B, const N: usize, const G: usize, const M: usize>(model: &A, twin: &B)
-where
-    A: Model<f64, N, G, M>,
-    B: Model<Dual, N, G, M>,
-{
-    let mut draw = Draw::new(2);
+fn balance(example: &Example) {
+    let (model, mut draw) = (&*example.machine, Draw::new(2));
     let mut largest: f64 = 0.0;
     for _ in 0..25 {
         let x = state(model, &mut draw);
         let t = 1.0 + draw.number();
-        let found = imbalance(model, twin, t, &x);
+        let found = imbalance(model, &*example.twin, t, &x);
         assert!(found <= ROUNDING, "{}: {found:e} at {x:?}", model.description().name);
         largest = largest.max(found);
     }
-    println!("{}: {N} states, {largest:.1e}", model.description().name);
+    println!("{}: {} states, {largest:.1e}", model.description().name, model.states());
 }
 
 /// One test a model: d(stored)/dt = supplied - dissipated at 25 random states.
 macro_rules! power_is_balanced {
-    ($($test:ident: $module:ident $model:ident ($parameters:ident $(, $inputs:ident { $($input:ident),* })?);)*) => {$(
+    ($($test:ident: $module:ident $model:ident ($($rest:tt)*);)*) => {$(
         #[test]
         fn $test() {
-            use models::$module::{$model, $parameters $(, $inputs)?};
-            let model = $model::new($parameters::default() $(, $inputs { $($input: Input::constant(0.7)),* })?);
-            let twin = $model::<Dual>::in_scalar(
-                $parameters::default() $(, $inputs { $($input: Input::constant(0.7)),* })?
-            );
-            balance(&model.unwrap(), &twin.unwrap());
+            balance(&examples::$test(&Input::constant(0.7)));
         }
     )*};
 }

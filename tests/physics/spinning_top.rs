@@ -42,7 +42,7 @@ fn regular_precession_keeps_its_tilt_and_rate() {
         start[state("top.position_x")] += outward;
         start[state("top.position_z")] += upward;
         start[state("top.linear.p_y")] += p.mass * precession * outward;
-        let run = record_from(&model, &start, &instants(2.0, 50), 1e-11);
+        let run = record_from(&model, start.as_slice(), &instants(2.0, 50), 1e-11);
         let radius = p.arm * tilt.sin() + outward;
         let height = p.arm * tilt.cos() + upward;
         let on_circle = |r: f64, z: f64| {

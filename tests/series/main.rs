@@ -3,18 +3,12 @@
 //! Held for every example and every scene of the hacksaw at random states, every switch in either branch, over a time
 //! so short that what the polynomial leaves out is below rounding, and so long that its later terms are not.
 
-use bg_model::capability::Series;
+use bg_model::dynamics::Machine;
 use bg_model::input::Input;
-use bg_model::nalgebra::SVector;
-use bg_model::system::{Model, System};
-use bond_graph_tests::models;
+use bond_graph_tests::support::example::{self, Example};
 use bond_graph_tests::support::power::{Draw, state};
 use bond_graph_tests::support::record::along;
 use bond_graph_tests::{each_example, each_scene};
-use hacksaw::mechanism::{
-    Angles, AnglesParameters, FreeRun, FreeRunParameters, Full, FullParameters, Hacksaw, HacksawParameters, Motion,
-    MotionParameters, Paper, PaperParameters, Rigid, RigidParameters,
-};
 
 /// The order of the polynomials.
 const ORDER: usize = 12;
@@ -23,50 +17,38 @@ const LAST: f64 = 1e-14;
 /// The largest difference between the derivative and the rate, relative to the sum of the derivative's terms.
 const DIFFERENCE: f64 = 1e-11;
 
-type Polynomial<const N: usize> = [SVector<f64, N>; ORDER + 1];
+/// The states at the start, then the terms of each order, of all states.
+type Polynomial = Vec<f64>;
 
 /// The series from time `t` and state `x` in units of `h`.
-fn series<Mo, const N: usize, const G: usize>(
-    model: &Mo,
-    (t, h): (f64, f64),
-    x: &SVector<f64, N>,
-    negative: &[bool; G],
-) -> Polynomial<N>
-where
-    Mo: System<f64, N, G>,
-{
-    let mut polynomial = [SVector::repeat(f64::NAN); ORDER + 1];
-    polynomial[0] = *x;
-    let series = model.series().expect("constant inputs only");
-    series.expand(t, h, negative, &mut vec![f64::NAN; ORDER * series.width()], &mut polynomial);
+fn series(model: &dyn Machine, (t, h): (f64, f64), x: &[f64], negative: &[bool]) -> Polynomial {
+    let mut polynomial = vec![f64::NAN; (ORDER + 1) * x.len()];
+    polynomial[..x.len()].copy_from_slice(x);
+    let size = model.series().expect("constant inputs only");
+    model.expand(t, h, negative, &mut vec![f64::NAN; ORDER * size.width], &mut polynomial);
     polynomial
 }
 
+/// The largest magnitude of these numbers.
+fn largest(of: &[f64]) -> f64 {
+    of.iter().fold(0.0, |largest, value| largest.max(value.abs()))
+}
+
 /// The sum of the terms at the part `theta` of the unit, each times what `factor` makes of its order.
-fn sum<const N: usize>(polynomial: &Polynomial<N>, theta: f64, factor: impl Fn(usize) -> f64) -> SVector<f64, N> {
-    let terms = polynomial.iter().enumerate();
-    terms.fold(SVector::zeros(), |sum, (k, term)| sum + term * (factor(k) * theta.powi(k as i32)))
+fn sum(polynomial: &[f64], n: usize, theta: f64, factor: impl Fn(usize) -> f64) -> Vec<f64> {
+    let term = |k: usize, order: usize| polynomial[order * n + k] * (factor(order) * theta.powi(order as i32));
+    (0..n).map(|k| (0..=ORDER).fold(0.0, |sum, order| sum + term(k, order))).collect()
 }
 
 /// The polynomial from here with the unit of time that makes its last terms small, and that unit.
-fn short<Mo, const N: usize, const G: usize>(
-    model: &Mo,
-    t: f64,
-    x: &SVector<f64, N>,
-    negative: &[bool; G],
-) -> Option<(Polynomial<N>, f64)>
-where
-    Mo: System<f64, N, G>,
-{
-    let mut h = 1.0;
+fn short(model: &dyn Machine, t: f64, x: &[f64], negative: &[bool]) -> Option<(Polynomial, f64)> {
+    let (n, mut h) = (x.len(), 1.0);
     for _ in 0..60 {
         let polynomial = series(model, (t, h), x, negative);
-        let largest = polynomial[1..].iter().map(|term| term.amax()).fold(0.0, f64::max);
-        let last = polynomial[ORDER].amax().max(polynomial[ORDER - 1].amax());
-        if polynomial.iter().any(|term| term.iter().any(|value| value.is_nan())) {
+        if polynomial.iter().any(|value| value.is_nan()) {
             return None;
         }
-        if last <= LAST * largest {
+        if largest(&polynomial[(ORDER - 1) * n..]) <= LAST * largest(&polynomial[n..]) {
             return Some((polynomial, h));
         }
         h *= 0.7;
@@ -75,14 +57,11 @@ where
 }
 
 /// Holds the polynomials at random states; a law may have no value, or no derivative, at some of them.
-fn agrees<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo)
-where
-    Mo: Model<f64, N, G, M>,
-{
+fn agrees(model: &dyn Machine) {
     let mut draw = Draw::new(7);
     let points = (0..12).map(|round| {
         let x = state(model, &mut draw);
-        (1.0 + draw.number(), x, [round % 2 == 0; G])
+        (1.0 + draw.number(), x, vec![round % 2 == 0; model.switches()])
     });
     let points: Vec<_> = points.collect();
     agrees_at(model, &points, 1e-6);
@@ -90,32 +69,28 @@ where
 
 /// Holds the polynomials at these times, states and branches. Rates are compared as if each had at least the part
 /// `floor` of the largest.
-fn agrees_at<Mo, const N: usize, const G: usize, const M: usize>(
-    model: &Mo,
-    points: &[(f64, SVector<f64, N>, [bool; G])],
-    floor: f64,
-) where
-    Mo: Model<f64, N, G, M>,
-{
-    let (mut largest, mut rounds): (f64, usize) = (0.0, 0);
+fn agrees_at(model: &dyn Machine, points: &[(f64, Vec<f64>, Vec<bool>)], floor: f64) {
+    let n = model.states();
+    let (mut apart, mut rounds): (f64, usize) = (0.0, 0);
     for (t, x, negative) in points {
         let Some((polynomial, h)) = short(model, *t, x, negative) else { continue };
         rounds += 1;
+        let terms = || polynomial.chunks_exact(n).enumerate();
         for theta in [0.4, 0.7, 1.0] {
-            let mut rate = SVector::zeros();
-            model.rate(t + theta * h, &sum(&polynomial, theta, |_| 1.0), negative, &mut rate);
-            let slope = sum(&polynomial, theta, |k| k as f64) / theta;
-            let scale = polynomial.iter().enumerate().map(|(k, term)| term.amax() * k as f64).sum::<f64>();
-            for k in 0..N {
-                let own: f64 = polynomial.iter().enumerate().map(|(order, term)| term[k].abs() * order as f64).sum();
-                let difference = (slope[k] - h * rate[k]).abs() / (own + floor * scale);
-                largest = largest.max(difference);
+            let mut rate = vec![0.0; n];
+            model.rate(t + theta * h, &sum(&polynomial, n, theta, |_| 1.0), negative, &mut rate);
+            let slope = sum(&polynomial, n, theta, |k| k as f64);
+            let scale = terms().map(|(k, term)| largest(term) * k as f64).sum::<f64>();
+            for k in 0..n {
+                let own: f64 = terms().map(|(order, term)| term[k].abs() * order as f64).sum();
+                let difference = (slope[k] / theta - h * rate[k]).abs() / (own + floor * scale);
+                apart = apart.max(difference);
             }
         }
     }
-    println!("{}: {N} states, {rounds} rounds, {largest:.1e}", model.description().name);
+    println!("{}: {n} states, {rounds} rounds, {apart:.1e}", model.description().name);
     assert!(rounds >= 4, "{rounds} rounds");
-    assert!(largest <= DIFFERENCE, "{largest:e}");
+    assert!(apart <= DIFFERENCE, "{apart:e}");
 }
 
 /// An input that does not change.
@@ -124,11 +99,10 @@ fn steady() -> Input {
 }
 
 macro_rules! example_agrees {
-    ($($test:ident: $module:ident $model:ident ($parameters:ident $(, $inputs:ident { $($input:ident),* })?);)*) => {$(
+    ($($test:ident: $module:ident $model:ident ($($rest:tt)*);)*) => {$(
         #[test]
         fn $test() {
-            use models::$module::{$model, $parameters $(, $inputs)?};
-            agrees(&$model::new($parameters::default() $(, $inputs { $($input: steady()),* })?).unwrap());
+            agrees(&*example::examples::$test(&steady()).machine);
         }
     )*};
 }
@@ -140,10 +114,10 @@ mod examples {
 }
 
 macro_rules! scene_agrees {
-    ($($test:ident: $model:ident ($parameters:ident);)*) => {$(
+    ($($test:ident: $model:ident ($($rest:tt)*);)*) => {$(
         #[test]
         fn $test() {
-            agrees(&$model::new($parameters::default()).unwrap());
+            agrees(&*example::scenes::$test().machine);
         }
     )*};
 }
@@ -157,22 +131,20 @@ mod scenes {
 /// Its series are in parts, and depend on switches.
 #[test]
 fn a_long_model_along_its_motion() {
-    let model = models::long::Whip::new(models::long::WhipParameters::default()).unwrap();
+    let model = example::whip().machine;
     // Joints hold momenta at rest, whose rates are rounding.
-    agrees_at(&model, &along(&model, 0.5), 1e-3);
+    agrees_at(&*model, &along(&*model, 0.5), 1e-3);
 }
 
 /// Its series has loops.
 #[test]
 fn a_model_that_repeats_itself() {
-    agrees(&models::long::Rope::new(models::long::RopeParameters::default()).unwrap());
+    agrees(&*example::rope().machine);
 }
 
 #[test]
 fn an_input_that_changes_leaves_no_series() {
-    use models::dc_motor::{DcMotor, DcMotorInputs, DcMotorParameters};
-    let motor = |voltage| DcMotor::new(DcMotorParameters::default(), DcMotorInputs { voltage }).unwrap();
-    let has_series = |voltage| motor(voltage).series().is_some();
+    let has_series = |voltage: Input| example::examples::dc_motor(&voltage).machine.series().is_some();
     assert!(has_series(Input::constant(12.0)));
     assert!(!has_series(Input::function(|t| t)));
     assert!(!has_series(Input::with_rate(|t| t, |_| 1.0)));
@@ -181,7 +153,8 @@ fn an_input_that_changes_leaves_no_series() {
 /// Twice the products of two factors that change, in fours, and the places of quotients and functions.
 #[test]
 fn widths_of_the_hacksaw() {
-    assert_eq!(Paper::new(PaperParameters::default()).unwrap().width(), 120);
-    assert_eq!(FreeRun::new(FreeRunParameters::default()).unwrap().width(), 72);
-    assert_eq!(Hacksaw::new(HacksawParameters::default()).unwrap().width(), 576);
+    let width = |scene: Example| scene.machine.series().expect("there are no inputs").width;
+    assert_eq!(width(example::scenes::paper()), 120);
+    assert_eq!(width(example::scenes::free_run()), 72);
+    assert_eq!(width(example::scenes::literal()), 576);
 }

@@ -1,10 +1,11 @@
 //! The power balance of a model at states drawn at random.
 
 use bg_model::description::{StateInfo, StateKind};
-use bg_model::nalgebra::SVector;
+use bg_model::dynamics::Machine;
 use bg_model::scalar::Dual;
-use bg_model::system::{Model, Powers};
+use bg_model::system::Powers;
 
+use crate::support::example::Twin;
 use crate::support::rotation::matrix;
 
 /// Numbers that look random and are the same every time (SplitMix64, Steele, Lea and Flood 2014).
@@ -50,10 +51,8 @@ fn is_of_one_rotation(one: &StateInfo, other: &StateInfo) -> bool {
 
 /// A state drawn at random: storages and positions anywhere near their start, orientations any rotation; about z, where
 /// a scene integrates less than the whole matrix.
-pub fn state<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, draw: &mut Draw) -> SVector<f64, N>
-where
-    Mo: Model<f64, N, G, M>,
-{
+#[must_use]
+pub fn state(model: &dyn Machine, draw: &mut Draw) -> Vec<f64> {
     let mut x = model.start().expect("the mechanism closes");
     let mut index = 0;
     for of_one in model.description().states.chunk_by(is_of_one_rotation) {
@@ -74,28 +73,21 @@ where
 ///
 /// The rate of the energy is a sum of exact derivatives: one pass with dual numbers for each state, and one for the
 /// time.
-pub fn imbalance<A, B, const N: usize, const G: usize, const M: usize>(
-    model: &A,
-    twin: &B,
-    t: f64,
-    x: &SVector<f64, N>,
-) -> f64
-where
-    A: Model<f64, N, G, M>,
-    B: Model<Dual, N, G, M>,
-{
-    let mut guards = SVector::<f64, G>::zeros();
-    model.guards(t, x, &[false; G], &mut guards);
-    let negative = std::array::from_fn(|k| guards[k] < 0.0);
-    let mut rate = SVector::zeros();
+#[must_use]
+pub fn imbalance(model: &dyn Machine, twin: &dyn Twin, t: f64, x: &[f64]) -> f64 {
+    let mut guards = vec![0.0; model.switches()];
+    model.guards(t, x, &vec![false; model.switches()], &mut guards);
+    let negative: Vec<bool> = guards.iter().map(|&guard| guard < 0.0).collect();
+    let mut rate = vec![0.0; x.len()];
     model.rate(t, x, &negative, &mut rate);
     let Powers { supplied, dissipated } = model.powers(t, x, &negative);
     let along = |index: Option<usize>| {
-        let seeded = SVector::<Dual, N>::from_fn(|k, _| Dual::new(x[k], if Some(k) == index { 1.0 } else { 0.0 }));
+        let slope = |k: usize| if Some(k) == index { 1.0 } else { 0.0 };
+        let seeded: Vec<Dual> = x.iter().enumerate().map(|(k, &x)| Dual::new(x, slope(k))).collect();
         let time = Dual::new(t, if index.is_none() { 1.0 } else { 0.0 });
         twin.stored_energy(time, &seeded, &negative).slope * index.map_or(1.0, |k| rate[k])
     };
-    let parts: Vec<f64> = (0..N).map(Some).chain([None]).map(along).collect();
+    let parts: Vec<f64> = (0..x.len()).map(Some).chain([None]).map(along).collect();
     let change: f64 = parts.iter().sum();
     let scale = parts.iter().map(|part| part.abs()).sum::<f64>() + supplied.abs() + dissipated.abs();
     if scale == 0.0 { 0.0 } else { (change - supplied + dissipated).abs() / scale }

@@ -1,12 +1,10 @@
 //! A run of a model with its outputs by name.
 
-use bg_model::dynamics::Typed;
-use bg_model::failure::Failure;
+use bg_model::dynamics::Machine;
 use bg_model::integrator::{Dop853, Tolerances};
-use bg_model::nalgebra::SVector;
-use bg_model::simulation::{EachSample, Part, Recorder, Recording, Samples, Settings, Span, integrate};
+use bg_model::mechanism::Mechanism;
+use bg_model::simulation::{EachSample, Part, Recorder, Recording, Samples, Settings, Span, drive};
 use bg_model::statistics::Statistics;
-use bg_model::system::{Model, switches, values};
 
 /// The outputs of a run at its sample times.
 #[derive(Clone, Debug)]
@@ -85,41 +83,23 @@ pub fn instants(end: f64, count: u32) -> Vec<f64> {
 ///
 /// # Panics
 /// The start does not close, or the run fails.
-pub fn record<Mo, const N: usize, const G: usize, const M: usize>(model: &Mo, times: &[f64], tolerance: f64) -> Record
-where
-    Mo: Model<f64, N, G, M>,
-{
-    let start = model.start().expect("the mechanism closes");
-    record_from(model, &start, times, tolerance)
+#[must_use]
+pub fn record<Me: Mechanism>(model: &Me, times: &[f64], tolerance: f64) -> Record {
+    let machine = model.machine();
+    run(&*machine, &machine.start().expect("the mechanism closes"), times, tolerance)
 }
 
 /// Runs `model` from the state `start`, otherwise as [`record`].
 ///
 /// # Panics
 /// The run fails.
-pub fn record_from<Mo, const N: usize, const G: usize, const M: usize>(
-    model: &Mo,
-    start: &SVector<f64, N>,
-    times: &[f64],
-    tolerance: f64,
-) -> Record
-where
-    Mo: Model<f64, N, G, M>,
-{
-    attempt(model, start, times, tolerance).unwrap_or_else(|failure| panic!("{failure}"))
+#[must_use]
+pub fn record_from<Me: Mechanism>(model: &Me, start: &[f64], times: &[f64], tolerance: f64) -> Record {
+    run(&*model.machine(), start, times, tolerance)
 }
 
-fn attempt<Mo, const N: usize, const G: usize, const M: usize>(
-    model: &Mo,
-    start: &SVector<f64, N>,
-    times: &[f64],
-    tolerance: f64,
-) -> Result<Record, Failure>
-where
-    Mo: Model<f64, N, G, M>,
-{
-    let machine = Typed::model(model);
-    let mut recorder = Recorder::new(&machine, &[Part::Outputs]);
+fn run(machine: &dyn Machine, start: &[f64], times: &[f64], tolerance: f64) -> Record {
+    let mut recorder = Recorder::new(machine, &[Part::Outputs]);
     let span = Span { t0: 0.0, t_end: times.last().copied().unwrap_or(0.0) };
     let settings = Settings {
         // Stretches and momenta of stiff joints are small numbers: the absolute tolerance lies well below them.
@@ -130,10 +110,11 @@ where
         step_limit: 5_000_000,
         ..Settings::default()
     };
-    let finish = integrate(model, &mut Dop853::new(), start, span, &settings, &mut recorder)?;
+    let finish = drive(machine, &mut Dop853::new(), start, span, &settings, None, &mut recorder);
+    let finish = finish.unwrap_or_else(|failure| panic!("{failure}"));
     let recording = recorder.recording;
     let (times, events) = (recording.times.clone(), recording.events.clone());
-    Ok(Record { times, events, statistics: finish.statistics, recording })
+    Record { times, events, statistics: finish.statistics, recording }
 }
 
 /// Times, states and branches of switches at 20 even instants of a run by DOP853 from the start, the last one before
@@ -141,21 +122,16 @@ where
 ///
 /// # Panics
 /// The start does not close, or the run fails.
-pub fn along<Mo, const N: usize, const G: usize, const M: usize>(
-    model: &Mo,
-    end: f64,
-) -> Vec<(f64, SVector<f64, N>, [bool; G])>
-where
-    Mo: Model<f64, N, G, M>,
-{
+#[must_use]
+pub fn along(model: &dyn Machine, end: f64) -> Vec<(f64, Vec<f64>, Vec<bool>)> {
     let start = model.start().expect("the mechanism closes");
     let mut samples = Vec::new();
     let mut observer =
-        EachSample(|t: f64, x: &[f64], negative: &[bool]| samples.push((t, *values(x), *switches(negative))));
+        EachSample(|t: f64, x: &[f64], negative: &[bool]| samples.push((t, x.to_vec(), negative.to_vec())));
     let times = (0..20).map(|k| end / 20.0 * f64::from(k)).collect();
     let settings = Settings { samples: Samples::At(times), ..Settings::default() };
-    integrate(model, &mut Dop853::new(), &start, Span { t0: 0.0, t_end: end }, &settings, &mut observer)
-        .expect("the run ends");
+    let span = Span { t0: 0.0, t_end: end };
+    drive(model, &mut Dop853::new(), &start, span, &settings, None, &mut observer).expect("the run ends");
     assert_eq!(samples.len(), 20);
     samples
 }

@@ -177,14 +177,15 @@ fn graphs(gathered: &Gathered, wanted: Wanted<'_>) -> Staged<Vec<Graph>> {
         match known {
             Known::Graph(derived, scenes) => graphs.push(Graph::begun(Model::declared(&derived), scenes, true)),
             Known::Model(model) => {
-                let (scenes, is_literal, stands_for_graph) =
-                    (model.scenes.clone(), !model.is_scene, model.stands_for_graph());
+                let (scenes, is_literal) = (model.scenes.clone(), !model.is_scene);
                 let model = Model::of(*model, wanted.counted);
-                match graphs.last_mut().filter(|_| !stands_for_graph) {
-                    Some(graph) => {
-                        let own = graph.models.iter_mut().find(|own| own.description.name == model.description.name);
-                        *own.expect("its graph names it") = model;
-                    }
+                // No two models have one name: what the last graph does not name stands for a graph of its own.
+                let name = model.description.name;
+                let own = graphs
+                    .last_mut()
+                    .and_then(|graph| graph.models.iter_mut().find(|own| own.description.name == name));
+                match own {
+                    Some(own) => *own = model,
                     None => graphs.push(Graph::begun(model, scenes, is_literal)),
                 }
             }

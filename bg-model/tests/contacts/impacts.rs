@@ -7,7 +7,7 @@ use bg_model::bond_graph;
 use bg_model::dynamics::{Machine, shared};
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
 use bg_model::run::Simulation;
-use bg_model::simulation::{Observer, Settings, Span, Switching, integrate};
+use bg_model::simulation::{Observer, Settings, Span, Switching, drive, integrate};
 use bg_model::system::Model;
 
 bond_graph! {
@@ -200,10 +200,11 @@ where
 {
     let settings = Settings { tolerances, step_limit: 100_000, ..Settings::default() };
     let mut method: AnyMethod = integrator.method(1e-3);
-    let mut events = Events { model: shared(model.clone()), last: Vec::new(), found: Vec::new(), jumped: None };
-    let start = model.start().expect("a start");
+    let machine = shared(model.clone());
+    let mut events = Events { model: Rc::clone(&machine), last: Vec::new(), found: Vec::new(), jumped: None };
+    let start = machine.start().expect("a start");
     let span = Span { t0: 0.0, t_end: end };
-    let finish = integrate(model, &mut method, &start, span, &settings, &mut events);
+    let finish = drive(&*machine, &mut method, &start, span, &settings, None, &mut events);
     let finish = finish.unwrap_or_else(|failure| panic!("{}: {failure}", integrator.name()));
     (outputs(&*events.model, finish.t, finish.x.as_slice(), &finish.negative), events)
 }

@@ -11,3 +11,4 @@ mod orifice;
 mod problems;
 mod redundant;
 mod start;
+mod text;
