@@ -10,5 +10,6 @@ mod orifice;
 #[path = "../problems/mod.rs"]
 mod problems;
 mod redundant;
+mod space;
 mod start;
 mod text;
