@@ -50,6 +50,8 @@ pub struct Compiled {
     pub source: Graph,
     /// Whether it is a scene.
     pub is_scene: bool,
+    /// Whether its structs are those of its graph: it is no scene, or the first one of `scenes only`.
+    pub stands_for_graph: bool,
     /// The other models of the graph, where this one stands for the graph.
     pub scenes: Vec<String>,
     /// Its results as far as the state equations of the whole graph.
@@ -102,12 +104,6 @@ pub fn models_where(source: &Source, is_wanted: &dyn Fn(&str) -> bool) -> Staged
 }
 
 impl Compiled {
-    /// Whether its structs are those of its graph: it is no scene, or the first one of `scenes only`.
-    #[must_use]
-    pub fn stands_for_graph(&self) -> bool {
-        !self.is_scene || !self.scenes.is_empty()
-    }
-
     /// The functions of the running model with their operations.
     #[must_use]
     pub fn costs(&self) -> Vec<(&str, Counts)> {
@@ -236,6 +232,7 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     Ok(Compiled {
         source,
         is_scene,
+        stands_for_graph: variant.stands_for_graph,
         scenes,
         derived,
         reduction,

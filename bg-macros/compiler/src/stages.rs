@@ -65,6 +65,7 @@ fn of_model(model: &Compiled) -> Vec<Stage> {
     let Compiled {
         source,
         is_scene: _,
+        stands_for_graph: _,
         scenes: _,
         derived,
         reduction,

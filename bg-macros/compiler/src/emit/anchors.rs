@@ -107,7 +107,7 @@ fn standing<'m>(graph: &Graph, models: &'m [Compiled]) -> Option<&'m Compiled> {
         name == graph.name.text
             || graph.items.iter().any(|item| matches!(item, Item::Scene(scene) if scene.name.text == name))
     };
-    models.iter().find(|model| model.stands_for_graph() && is_of(&model.source.name.text))
+    models.iter().find(|model| model.stands_for_graph && is_of(&model.source.name.text))
 }
 
 /// A type for each kind of thing that occurs.

@@ -68,7 +68,7 @@ impl Emission<'_> {
         let graph = &self.model.derived.causal.graph;
         let given = Given {
             name: &graph.name,
-            stands_for_graph: self.model.stands_for_graph(),
+            stands_for_graph: self.model.stands_for_graph,
             visibility: &graph.visibility,
             parameters: &self.model.equations.parameters,
             inputs: &graph.inputs,

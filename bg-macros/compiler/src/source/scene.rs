@@ -67,8 +67,9 @@ pub struct Variant {
     pub graph: Graph,
     /// The scene; none for the literal graph.
     pub scene: Option<Scene>,
-    /// The names of the other models of the graph, where this one stands for the graph: the literal one does, or with
-    /// `scenes only;` the first scene.
+    /// Whether it stands for the graph: the literal one does, or with `scenes only;` the first scene.
+    pub stands_for_graph: bool,
+    /// The names of the other models of the graph, where this one stands for the graph.
     pub scenes: Vec<String>,
 }
 
@@ -90,7 +91,8 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
     let named =
         source.items.iter().filter_map(|item| if let Item::Scene(scene) = item { Some(&scene.name) } else { None });
     let scenes = named.map(|name| name.text.clone()).collect();
-    let mut variants = vec![Variant { graph: literal.clone(), scene: None, scenes }];
+    let scenes_only = scenes_only(source);
+    let mut variants = vec![Variant { graph: literal.clone(), scene: None, stands_for_graph: !scenes_only, scenes }];
     faults.extend(idle_impulse(source));
     faults.extend(no_scene(source));
     for item in &source.items {
@@ -98,11 +100,10 @@ pub fn variants(source: &Graph) -> Staged<Vec<Variant>> {
         let mut items = left(&literal.items, &scene.without, &mut faults);
         stiffen(&mut items, &scene.rigid, &mut faults);
         let graph = watched(&literal, items, scene);
-        variants.push(Variant { graph, scene: Some(scene.clone()), scenes: Vec::new() });
+        variants.push(Variant { graph, scene: Some(scene.clone()), stands_for_graph: false, scenes: Vec::new() });
     }
-    if scenes_only(source)
-        && let [_, first, others @ ..] = variants.as_mut_slice()
-    {
+    if scenes_only && let [_, first, others @ ..] = variants.as_mut_slice() {
+        first.stands_for_graph = true;
         first.scenes = others.iter().map(|other| other.graph.name.text.clone()).collect();
     }
     if faults.is_empty() { Ok(variants) } else { Err(faults) }
@@ -249,6 +250,8 @@ mod tests {
         let variants = of("scene A {} scenes only; scene B {} scene G {}").unwrap();
         let scenes: Vec<_> = variants.iter().map(|variant| variant.scenes.join(" ")).collect();
         assert_eq!(scenes, ["A B G", "B G", "", ""]);
+        let stands = |text: &str| of(text).unwrap().iter().position(|variant| variant.stands_for_graph);
+        assert_eq!([stands("scene A {} scenes only;"), stands("scene A {}")], [Some(1), Some(0)]);
         assert!(variants.iter().all(|v| v.graph.items.iter().all(|item| !matches!(item, Item::ScenesOnly(_)))));
         let faults = of("scenes only;").unwrap_err();
         assert_eq!(faults.iter().map(|fault| fault.code).collect::<Vec<_>>(), ["BG0609"]);
