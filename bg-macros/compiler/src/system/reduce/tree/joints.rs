@@ -8,7 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::bodies::{Body, symbols, velocity};
-use super::numbers::{self, Matrix};
+use super::numbers::{self, Matrix, UNIT};
 use crate::expr::{Id, Pool, Symbol};
 use crate::system::Value;
 
@@ -53,13 +53,12 @@ pub(super) enum Kind {
     Floating,
 }
 
-const ALONG: Matrix = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 /// The third axis along the first one before.
 const ACROSS: Matrix = [0.0, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
-const TURN: Step = Step { before: ALONG, freedom: Freedom::Turn };
-const SLIDE: Step = Step { before: ALONG, freedom: Freedom::Slide };
-const BALL: Step = Step { before: ALONG, freedom: Freedom::Ball };
-const FREE: Step = Step { before: ALONG, freedom: Freedom::Free };
+const TURN: Step = Step { before: UNIT, freedom: Freedom::Turn };
+const SLIDE: Step = Step { before: UNIT, freedom: Freedom::Slide };
+const BALL: Step = Step { before: UNIT, freedom: Freedom::Ball };
+const FREE: Step = Step { before: UNIT, freedom: Freedom::Free };
 const TURN_ACROSS: Step = Step { before: ACROSS, freedom: Freedom::Turn };
 
 /// The steps that a joint has at most.
@@ -175,7 +174,7 @@ impl Joint {
             parent: None,
             child: body,
             kind: Kind::Floating,
-            frames: [ALONG; 2],
+            frames: [UNIT; 2],
             at: [Value::zero(pool, 3), Value::zero(pool, 3)],
             angle: None,
         }
@@ -196,7 +195,7 @@ impl Joint {
     }
 
     /// Each state and velocity of the child by those of the parent and the joint; with `turned` the parent's axes are
-    /// these.
+    /// these, and among what is returned.
     pub fn motion(
         &self,
         pool: &mut Pool,
@@ -212,11 +211,16 @@ impl Joint {
             None => (Value::identity(pool), Value::zero(pool, 3), Value::zero(pool, 3), Value::zero(pool, 3)),
             Some(parent) => {
                 let states = symbols(pool, &bodies[parent].axes);
-                let axes = turned.cloned().unwrap_or(states);
-                for (&state, &image) in bodies[parent].axes.iter().zip(&axes.0) {
-                    images.insert(Symbol::state(state), image);
+                if let Some(turned) = turned {
+                    let states = bodies[parent].axes.iter().map(|&state| Symbol::state(state));
+                    images.extend(states.zip(turned.0.iter().copied()));
                 }
-                (axes, symbols(pool, &bodies[parent].place), own(pool, parent, 0), own(pool, parent, 3))
+                (
+                    turned.cloned().unwrap_or(states),
+                    symbols(pool, &bodies[parent].place),
+                    own(pool, parent, 0),
+                    own(pool, parent, 3),
+                )
             }
         };
         let mut arm = axes.multiply(pool, &self.at[0]);

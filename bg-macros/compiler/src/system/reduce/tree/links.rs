@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 
 use super::bodies::Body;
 use super::joints::{Freedom, Joint};
-use super::numbers::{self, Matrix};
+use super::numbers::{self, Matrix, symmetric};
 use crate::expr::{Id, Pool};
 use crate::system::Value;
 
@@ -82,7 +82,7 @@ pub(super) fn of(pool: &mut Pool, bodies: &[Body], joints: &[Joint]) -> (Vec<Lin
                 offset,
                 counted: (pool.zero(), Value::zero(pool, 3), Value::zero(pool, 9)),
             });
-            (link, frame, from) = (Some(links.len() - 1), numbers::upright(&[0.0, 0.0, 1.0]), left);
+            (link, frame, from) = (Some(links.len() - 1), numbers::UNIT, left);
         }
         let axes = numbers::product(&joint.frames[1], &numbers::transposed(&frame));
         let by = numbers::matrix(pool, &axes).multiply(pool, &from).negate(pool);
@@ -177,9 +177,4 @@ fn steiner(pool: &mut Pool, mass: Id, first: &Value, by: &Value) -> Value {
     let (one, other) = (half.outer(pool, by), by.outer(pool, first));
     let sum = one.add(pool, &other).negate(pool);
     symmetric(&size.add(pool, &sum))
-}
-
-/// A matrix whose lower half is the upper one, but for rounding.
-pub(super) fn symmetric(of: &Value) -> Value {
-    Value((0..9).map(|k| of.0[3 * (k / 3).min(k % 3) + (k / 3).max(k % 3)]).collect())
 }

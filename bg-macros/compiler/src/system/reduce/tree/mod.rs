@@ -4,8 +4,8 @@
 //! (`joints` has their kinds). Out: the same with an angle or a travel and its speed for each freedom of these; poses
 //! and momenta of bodies are expressions of these. Method: with the motion of a joint in place of that of a body its gaps
 //! and flows are zero identically (`recognition`), so no motion is lost; its reactions work on none of these motions, so
-//! they occur in none of the rates. These are found from tip to ground and back (`recursion`). What else is held, by joints that close loops,
-//! stops and dry friction, keeps its reactions, which are loads to the tree.
+//! they occur in none of the rates. These are found from tip to ground and back (`recursion`). What else is held, by
+//! joints that close loops, stops and dry friction, keeps its reactions, which are loads to the tree.
 
 mod bodies;
 mod joints;
@@ -27,9 +27,10 @@ use crate::system::Value;
 use crate::system::equations::{Kind, Origin, State, StateEquations};
 use bodies::{Body, velocity};
 use joints::{Freedom, Joint, Moves};
+use links::Link;
 use loads::{Loads, Tree};
 use motion::Motion;
-use recursion::Accelerations;
+use recursion::{Accelerations, Moved};
 use relative::Coordinated;
 
 /// Whether there is anything to look at: rows of rigid joints.
@@ -44,7 +45,7 @@ pub(super) fn speeds(equations: &StateEquations) -> usize {
 
 /// Whether it has been done.
 pub(super) fn is_put(equations: &StateEquations) -> bool {
-    equations.states.iter().any(|state| matches!(state.origin, Origin::Speed(..)))
+    speeds(equations) > 0
 }
 
 /// Takes the bodies of trees of joints out of the equations; none where there are none, or something does not fit.
@@ -68,7 +69,7 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     let Loads { moved, axes, ground } = Loads::of(equations, &tree, &coordinates);
     let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
     let found = recursion::accelerations(&mut equations.pool, &links, &moved, &motion.spins, &ground);
-    let found = linear(equations, found);
+    let found = linear(equations, &links, found);
     let starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
     motion.energies(equations, &bodies, &seats);
     let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
@@ -91,33 +92,11 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
         report.say(state, Fate::Equal(name));
         images.extend([(Symbol::state(state), place), (turn, equations.pool.zero())]);
     }
+    let integrated = become_states(equations, &tree, (&moved, &found.rates), &starts, report)?;
     let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
-    for (link, (own, &rate)) in links.iter().zip(moved.iter().zip(&found.rates)) {
-        if !link.freedom.has_coordinate() {
-            continue;
-        }
-        let (number, step) = link.step;
-        let body = &bodies[joints[number].child];
-        let Origin::Orientation(track, ..) = equations.states[body.axes[0]].origin else { return None };
-        let [place, speed] = starts[number][step];
-        let names = names(&joints[number], step);
-        let units = match link.freedom {
-            Freedom::Turn => ["rad", "rad/s"],
-            _ => ["m", "m/s"],
-        };
-        let origins = [Origin::Hinge(track, step), Origin::Speed(track, step)];
-        let slots = [body.place[step], body.linear[step]];
-        for (side, (start, rate)) in [(place, own.moves.speed), (speed, rate)].into_iter().enumerate() {
-            let (state, name, unit) = (slots[side], names[side].clone(), units[side].to_owned());
-            let new = State { name, unit, origin: origins[side], start, rate };
-            kept[state] = true;
-            report.rename(state, new.clone());
-            report.say(state, Fate::Integrated);
-            equations.states[state] = new;
-            let coordinate = [own.moves.place, own.moves.speed][side];
-            let Node::Symbol(symbol) = *equations.pool.node(coordinate) else { return None };
-            places.insert(symbol, equations.pool.symbol(Symbol::state(state)));
-        }
+    for (coordinate, state) in integrated {
+        kept[state] = true;
+        places.insert(coordinate, equations.pool.symbol(Symbol::state(state)));
     }
     equations.projections.retain(|(state, _)| kept[*state] && !given.contains(state));
     equations.replace(&|symbol| images.get(&symbol).copied());
@@ -126,8 +105,46 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     Some(())
 }
 
-/// The accelerations as sums over the reactions that are left, so that the matrix of these has parts of the rates.
-fn linear(equations: &mut StateEquations, of: Accelerations) -> Accelerations {
+/// Puts the place and the speed of each step into states of its body; the symbol of each of these coordinates, with its
+/// state.
+fn become_states(
+    equations: &mut StateEquations,
+    tree: &Tree<'_>,
+    (moved, rates): (&[Moved], &[Id]),
+    starts: &[Vec<[Id; 2]>],
+    report: &mut Report,
+) -> Option<BTreeMap<Symbol, usize>> {
+    let mut places = BTreeMap::new();
+    for (link, (own, &rate)) in tree.links.iter().zip(moved.iter().zip(rates)) {
+        let (number, step) = link.step;
+        let joint = &tree.joints[number];
+        let body = &tree.bodies[joint.child];
+        let units = match link.freedom {
+            Freedom::Turn => ["rad", "rad/s"],
+            Freedom::Slide => ["m", "m/s"],
+            Freedom::Ball | Freedom::Free => continue,
+        };
+        let Origin::Orientation(track, ..) = equations.states[body.axes[0]].origin else { return None };
+        let origins = [Origin::Hinge(track, step), Origin::Speed(track, step)];
+        let slots = [body.place[step], body.linear[step]];
+        let coordinates = [own.moves.place, own.moves.speed];
+        let rates = [own.moves.speed, rate];
+        for (side, name) in names(joint, step).into_iter().enumerate() {
+            let (unit, start) = (units[side].to_owned(), starts[number][step][side]);
+            let new = State { name, unit, origin: origins[side], start, rate: rates[side] };
+            report.rename(slots[side], new.clone());
+            report.say(slots[side], Fate::Integrated);
+            equations.states[slots[side]] = new;
+            let Node::Symbol(symbol) = *equations.pool.node(coordinates[side]) else { return None };
+            places.insert(symbol, slots[side]);
+        }
+    }
+    Some(places)
+}
+
+/// The accelerations as sums over the reactions that are left, so that the matrix of these has parts of the rates; those
+/// of links with a coordinate, whose accelerations nothing reads, as they are.
+fn linear(equations: &mut StateEquations, links: &[Link], of: Accelerations) -> Accelerations {
     let StateEquations { pool, reactions, .. } = equations;
     let multipliers: Vec<Symbol> = reactions.iter().map(|reaction| reaction.multiplier).collect();
     let zero = pool.zero();
@@ -144,7 +161,11 @@ fn linear(equations: &mut StateEquations, of: Accelerations) -> Accelerations {
         sums.iter().map(|sum| pool.sum(sum)).collect()
     };
     let rates = written(&of.rates);
-    let links = of.links.iter().map(|link| [0, 1].map(|k| Value(written(&link[k].0)))).collect();
+    let accelerated = links
+        .iter()
+        .zip(of.links)
+        .map(|(link, own)| if link.freedom.has_coordinate() { own } else { own.map(|part| Value(written(&part.0))) });
+    let links = accelerated.collect();
     Accelerations { rates, links }
 }
 

@@ -9,6 +9,8 @@ pub(super) type Vector = [f64; 3];
 /// By rows.
 pub(super) type Matrix = [f64; 9];
 
+pub(super) const UNIT: Matrix = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
+
 /// What rounding leaves of a component that is 0 or 1.
 const ROUNDING: f64 = 1e-13;
 
@@ -74,6 +76,11 @@ pub(super) fn constant(pool: &mut Pool, of: &Vector) -> Value {
 
 pub(super) fn matrix(pool: &mut Pool, of: &Matrix) -> Value {
     Value(of.iter().map(|&part| pool.number(part)).collect())
+}
+
+/// A matrix whose lower half is the upper one, but for rounding.
+pub(super) fn symmetric(of: &Value) -> Value {
+    Value((0..9).map(|k| of.0[3 * (k / 3).min(k % 3) + (k / 3).max(k % 3)]).collect())
 }
 
 /// Nodes with functions of numbers, as `cos(0.3)`, as numbers.

@@ -10,7 +10,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, velocity};
 use super::joints::{Joint, Kind, Moves, Probe, STEPS};
-use super::numbers::{self, Matrix, Vector};
+use super::numbers::{self, Matrix, UNIT, Vector};
 use crate::expr::{Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Slip, StateEquations};
@@ -37,7 +37,7 @@ pub(super) fn of(equations: &mut StateEquations, bodies: &[Body], starts: &Envir
             tree.extend(joint(equations, bodies, &given, left.remove(place), (parent, child)));
             continue;
         }
-        // A body that hangs on nothing carries what joints hang on it.
+        // A body without a joint to the tree is the base of those that its joints connect to it.
         let Some(base) = left.iter().find_map(|rows| rows.ends.first().copied().filter(|&body| !has(body))) else {
             let carries = |body: usize| tree.iter().any(|joint| joint.parent == Some(body));
             let is_needed: Vec<bool> =
@@ -151,7 +151,7 @@ fn joint(
         Kind::Revolute | Kind::Cylindrical => shared(pool, ends, &about, given)?,
         Kind::Prismatic => whole(pool, ends, &along, given)?,
         Kind::Fixed => whole(pool, ends, &[], given)?,
-        Kind::Spherical | Kind::Floating => [numbers::upright(&[0.0, 0.0, 1.0]); 2],
+        Kind::Spherical | Kind::Floating => [UNIT; 2],
     };
     let of_translations: Vec<Id> = translations.iter().map(|&row| gaps[row]).collect();
     let at = points(pool, ends, (&of_translations, &along))?;
@@ -164,7 +164,7 @@ fn joint(
 }
 
 /// The joint with the angle that is counted of it as its coordinate, where that takes quarter turns of its axes.
-fn by_its_angle(pool: &mut Pool, bodies: &[Body], mut joint: Joint, angles: &[(usize, [Id; 2])]) -> Joint {
+fn by_its_angle(pool: &mut Pool, bodies: &[Body], joint: Joint, angles: &[(usize, [Id; 2])]) -> Joint {
     if !matches!(joint.kind, Kind::Revolute | Kind::Cylindrical) {
         return joint;
     }
@@ -203,14 +203,11 @@ fn by_its_angle(pool: &mut Pool, bodies: &[Body], mut joint: Joint, angles: &[(u
                 continue;
             }
             aligned.angle = Some(state);
-            joint = aligned;
-            return joint;
+            return aligned;
         }
     }
     joint
 }
-
-const UNIT: Matrix = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
 /// A body at both ends of a joint; the ground where there is none.
 type Ends<'a> = [Option<&'a Body>; 2];

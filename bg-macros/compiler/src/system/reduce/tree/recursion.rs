@@ -7,6 +7,7 @@
 
 use super::joints::{Freedom, Moves};
 use super::links::Link;
+use super::numbers::symmetric;
 use crate::expr::{Id, Pool};
 use crate::system::Value;
 use crate::system::equations::definite::Factors;
@@ -284,8 +285,8 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
         less(pool, coupling, &column, &by[1]),
         less(pool, pushing, &row, &by[1]),
     ];
-    left[0] = super::links::symmetric(&left[0]);
-    left[2] = super::links::symmetric(&left[2]);
+    left[0] = symmetric(&left[0]);
+    left[2] = symmetric(&left[2]);
     // What the freedom takes no effort along.
     let (own_block, of_coupling) = match freedom {
         Freedom::Turn => (0, [6, 7, 8]),
@@ -326,7 +327,7 @@ fn release_ball(pool: &mut Pool, body: &Articulated) -> (Known, Articulated) {
     let still = inverse.multiply(pool, &body.bias[0]).negate(pool);
     let back = coupling.transpose();
     let less = back.multiply(pool, &by).negate(pool);
-    let pushing = super::links::symmetric(&pushing.add(pool, &less));
+    let pushing = symmetric(&pushing.add(pool, &less));
     let force = back.multiply(pool, &still).add(pool, &body.bias[1]);
     let (none, nothing) = (Value::zero(pool, 9), Value::zero(pool, 3));
     (Known::Ball(still, by), Articulated { inertia: [none.clone(), none, pushing], bias: [nothing, force] })
@@ -352,7 +353,7 @@ fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Va
     let lever = skew.multiply(pool, &pushing);
     let shifted = coupling.add(pool, &lever);
     let (one, other) = (skew.multiply(pool, &coupling.transpose()), shifted.multiply(pool, &skew).negate(pool));
-    let turning = super::links::symmetric(&turning.add(pool, &one).add(pool, &other));
+    let turning = symmetric(&turning.add(pool, &one).add(pool, &other));
     Articulated { inertia: [turning, shifted, pushing], bias: [moment, force] }
 }
 

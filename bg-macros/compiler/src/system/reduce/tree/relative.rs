@@ -143,10 +143,9 @@ fn images(pool: &mut Pool, tree: Coordinated<'_>, of: &BTreeSet<usize>) -> Optio
         }
         let motion = joint.motion(pool, tree.bodies, moves, None);
         for images in [&mut still, &mut anyhow] {
-            let (symbols, ids): (Vec<Symbol>, Vec<Id>) = motion.iter().map(|(&symbol, &id)| (symbol, id)).unzip();
-            let parent: Vec<Symbol> = parent_symbols(tree.bodies, joint);
+            let (symbols, ids): (Vec<Symbol>, Vec<Id>) = motion.clone().into_iter().unzip();
             let placed = substitute(pool, &ids, &|symbol| images.get(&symbol).copied());
-            images.extend(symbols.into_iter().zip(placed).filter(|(symbol, _)| !parent.contains(symbol)));
+            images.extend(symbols.into_iter().zip(placed));
             let moving = Value((0..3).map(|k| images[&velocity(joint.child, k)]).collect());
             images.extend(momenta(pool, &tree.bodies[joint.child], &moving));
         }
@@ -158,10 +157,4 @@ fn images(pool: &mut Pool, tree: Coordinated<'_>, of: &BTreeSet<usize>) -> Optio
 fn momenta(pool: &mut Pool, body: &Body, velocity: &Value) -> Vec<(Symbol, Id)> {
     let momentum = velocity.multiply(pool, &Value::scalar(body.mass));
     body.linear.iter().map(|&state| Symbol::state(state)).zip(momentum.0).collect()
-}
-
-/// What of a joint's motion is the parent's own.
-fn parent_symbols(bodies: &[Body], joint: &Joint) -> Vec<Symbol> {
-    let axes = joint.parent.map(|parent| bodies[parent].axes);
-    axes.iter().flatten().map(|&state| Symbol::state(state)).collect()
 }
