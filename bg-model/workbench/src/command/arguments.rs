@@ -6,7 +6,6 @@ use bg_model::integrator::Integrator;
 use bg_model::run::Request;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::gradient::GradientArguments;
 use super::identify::IdentifyArguments;
 use super::methods::integrator;
 use super::sensitivity::SensitivityArguments;
@@ -41,26 +40,13 @@ pub enum Command {
     },
     /// Print or draw the multibond graph of a scene: elements, bonds with causal strokes, states, equations, operations
     Graph(GraphArguments),
-    /// List the states of a scene: name, unit, storage
-    States {
-        /// The scene
-        #[arg(long, value_name = "NAME")]
-        scene: String,
-    },
-    /// Print the equations of a scene in the order of evaluation
-    Equations {
-        /// The scene
-        #[arg(long, value_name = "NAME")]
-        scene: String,
-    },
     /// Measure what each error costs: integrators over tolerances against reference solutions in extended precision
     Precision(PrecisionArguments),
     /// Linearise at an equilibrium or at some time: modes, frequency responses, A, B, C and D
     Linearize(LinearizeArguments),
-    /// Differentiate a run by parameters, exactly and through events: which parameter moves which output
+    /// Differentiate a run by parameters, exactly and through events: which parameter moves which output, or one number
+    /// by all parameters at once
     Sensitivity(SensitivityArguments),
-    /// Differentiate one number of a run by all parameters at once, exactly and through events
-    Gradient(GradientArguments),
     /// Fit parameters to measured columns: values with confidence, correlations, what cannot be identified
     Identify(IdentifyArguments),
     /// Run for many values of parameters by a plan, into Parquet files; on all cores, or on many machines
@@ -262,13 +248,10 @@ pub struct LinearizeArguments {
     #[command(flatten)]
     pub model: ModelArguments,
 
-    /// Where the run is at this time, s; 0 is the start [default: at the equilibrium]
+    /// Where the run is at this time, s; 0 is the start [default: at the static equilibrium near the start, springs
+    /// loaded, inputs as at t = 0]
     #[arg(long, value_name = "SECONDS", value_parser = real, allow_negative_numbers = true)]
     pub at: Option<f64>,
-
-    /// At the static equilibrium near the start, springs loaded, inputs as at t = 0; this is what is done without --at
-    #[arg(long, conflicts_with = "at")]
-    pub equilibrium: bool,
 
     /// The integrator of the run to --at
     #[arg(long, value_name = "NAME", default_value_t, value_parser = integrator())]
@@ -289,7 +272,7 @@ impl LinearizeArguments {
     pub fn of_scene(scene: &str) -> Self {
         let model = ModelArguments { scene: scene.to_owned(), set: Vec::new(), params: None, input: Vec::new() };
         let Request { method, rtol, .. } = Request::default();
-        Self { model, at: None, equilibrium: false, method, rtol, out: PathBuf::new() }
+        Self { model, at: None, method, rtol, out: PathBuf::new() }
     }
 
     /// How the run to `t` (s) is made.

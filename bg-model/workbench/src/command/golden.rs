@@ -3,27 +3,22 @@
 use std::process::ExitCode;
 
 use super::arguments::{CheckArguments, RecordArguments};
-use super::run::{claimed_and_run, machine};
+use super::run::{chosen, claimed_and_run, machine};
 use super::{InputError, ended};
 use crate::Program;
 use crate::files::console;
 use crate::golden::{Place, check_one, prepare};
-use crate::inputs;
-use crate::parameters;
 use crate::running::{Begin, Outcome};
 
 /// A run that stops before its end is not recorded.
 pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode, InputError> {
     let RecordArguments { model, integration, out, name } = arguments;
-    let graph = program.models.graph().description;
-    let mut chosen = parameters::merge(graph.parameters, model.params.as_deref(), &model.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&model.input, graph.inputs)?;
-    chosen.inputs = inputs;
+    let (chosen, named) = chosen(program, model)?;
     let integration = integration.integration();
     let request = integration.request(0.0, None)?;
     let scene = program.scene_called(&model.scene);
     let name = name.as_deref().unwrap_or(&scene.name);
-    let claim = || Ok(Place::claim(out, name, graph.name)?);
+    let claim = || Ok(Place::claim(out, name, program.models.graph().description.name)?);
     let machine = machine(program, scene, &chosen)?;
     let (Outcome { run, failure }, _, place) = claimed_and_run(&*machine, request, &Begin::Model, None, claim)?;
     if let Some(failure) = failure {

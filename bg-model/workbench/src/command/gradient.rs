@@ -1,5 +1,5 @@
-//! The command `gradient`: how one number of a run depends on all parameters, as table and CSV. Of programs that ask
-//! for it.
+//! The command `sensitivity` of one number: how it depends on all parameters, as table and CSV, by the run followed
+//! backwards.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -8,9 +8,8 @@ use bg_model::description::OutputInfo;
 use bg_model::sensitivity::{Measured, Objective};
 use clap::Args;
 
-use super::arguments::{IntegrationArguments, ModelArguments};
-use super::run::{machine, request};
-use super::sensitivity::{adjustable, observed};
+use super::run::{chosen, machine, request};
+use super::sensitivity::{SensitivityArguments, adjustable, at, observed};
 use super::{InputError, ended};
 use crate::Program;
 use crate::files::{FileError, RunFolder, console};
@@ -19,49 +18,38 @@ use crate::identify::Data;
 use crate::identify::data::{pair, read_file};
 use crate::inputs;
 use crate::output::OutputError;
-use crate::parameters;
 use crate::scenes::Scene;
 
 const TABLE: &str = "gradient.txt";
 const CSV: &str = "gradient.csv";
 
-/// What is differentiated, and by what.
+/// One number that is differentiated.
 #[derive(Debug, Args)]
-pub struct GradientArguments {
-    /// The output that is differentiated: its last value
-    #[arg(long = "of", value_name = "OUTPUT", required_unless_present = "data")]
+#[group(id = "one", multiple = true, conflicts_with_all = ["outputs", "most"])]
+pub struct OneNumber {
+    /// One number by all parameters at once, by the run followed backwards: this output at the end, or at one --at
+    #[arg(long = "of", value_name = "OUTPUT")]
     pub output: Option<String>,
 
-    /// Its value at this time, s
-    #[arg(long, value_name = "SECONDS", conflicts_with_all = ["integral", "data"], allow_negative_numbers = true)]
-    pub at: Option<f64>,
-
-    /// Its integral over the run
-    #[arg(long, conflicts_with = "data")]
+    /// Of --of its integral over the run
+    #[arg(long, requires = "output", conflicts_with = "at")]
     pub integral: bool,
 
-    /// The squares of what these columns leave, in parts of each one's root mean square: a CSV file as `identify` takes
-    /// it. The run ends at its last time
-    #[arg(long, value_name = "FILE.csv", conflicts_with = "output")]
+    /// One number likewise: the squares of what these columns leave, in parts of each one's root mean square. A CSV file
+    /// as `identify` takes it; the run ends at its last time
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["output", "at", "integral"])]
     pub data: Option<PathBuf>,
 
     /// Which output a column measures that has another name; can be given again and again
     #[arg(long, value_name = "NAME=OUTPUT", requires = "data")]
     pub column: Vec<String>,
+}
 
-    /// The parameters; several with commas [default: all that the scene leaves adjustable]
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
-    pub by: Vec<String>,
-
-    #[command(flatten)]
-    pub model: ModelArguments,
-
-    #[command(flatten)]
-    pub integration: IntegrationArguments,
-
-    /// Folder for gradient.txt and gradient.csv
-    #[arg(long, value_name = "DIR", default_value = "out/gradient")]
-    pub out: PathBuf,
+impl OneNumber {
+    /// Whether one is asked for.
+    pub const fn is_asked(&self) -> bool {
+        self.output.is_some() || self.data.is_some()
+    }
 }
 
 /// What is differentiated, in words, with its unit.
@@ -71,19 +59,15 @@ struct Question<'a> {
     objective: Objective<'a>,
 }
 
-pub fn gradient(program: &Program, arguments: &GradientArguments) -> Result<ExitCode, InputError> {
-    let values = &arguments.model;
-    let graph = program.models.graph().description;
-    let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&values.input, graph.inputs)?;
-    chosen.inputs = inputs;
-    let scene = program.scene_called(&values.scene);
+pub fn gradient(program: &Program, arguments: &SensitivityArguments) -> Result<ExitCode, InputError> {
+    let (chosen, named) = chosen(program, &arguments.model)?;
+    let scene = program.scene_called(&arguments.model.scene);
     let parameters = adjustable(scene, &chosen, &arguments.by, "--by")?;
     let mut request = request(&arguments.integration, 0.0, None)?;
-    let columns = match &arguments.data {
+    let columns = match &arguments.one.data {
         Some(path) => {
             let outputs = scene.description.outputs;
-            let named = arguments.column.iter().map(|text| pair(text, outputs)).collect::<Result<Vec<_>, _>>();
+            let named = arguments.one.column.iter().map(|text| pair(text, outputs)).collect::<Result<Vec<_>, _>>();
             let named = named.map_err(|fault| InputError::Unknown { option: "--column", fault })?;
             let data = read_file(path, outputs, &named, &[])?;
             request.t_end = data.times.last().copied().unwrap_or_default();
@@ -119,26 +103,28 @@ pub fn gradient(program: &Program, arguments: &GradientArguments) -> Result<Exit
 
 fn question<'a>(
     scene: &Scene,
-    arguments: &GradientArguments,
+    arguments: &SensitivityArguments,
     columns: &'a [Measured],
     t_end: f64,
 ) -> Result<Question<'a>, InputError> {
-    let Some(name) = &arguments.output else {
+    let Some(name) = &arguments.one.output else {
         let words = format!("squares of what {} columns leave", columns.len());
         return Ok(Question { words, unit: String::new(), objective: Objective::squares(columns) });
     };
     let (output, info) = only(scene, name)?;
     let (name, unit) = (info.name, info.unit.to_owned());
-    Ok(match arguments.at {
-        Some(value) if !(0.0..=t_end).contains(&value) => {
-            return Err(InputError::Range { name: "--at", value, range: format!("a time in the run, 0 to {t_end} s") });
+    let at = at(&arguments.at, t_end)?;
+    Ok(match at[..] {
+        [_, _, ..] => {
+            let fault = format!("one number has one time, and here are {}; leave --of out for several", at.len());
+            return Err(InputError::Unknown { option: "--at", fault });
         }
-        Some(t) => Question { words: format!("`{name}` at {t} s"), unit, objective: Objective::at(output, t) },
-        None if arguments.integral => {
+        [t] => Question { words: format!("`{name}` at {t} s"), unit, objective: Objective::at(output, t) },
+        [] if arguments.one.integral => {
             let unit = if unit.is_empty() { "s".to_owned() } else { format!("{unit}*s") };
             Question { words: format!("integral of `{name}` over time"), unit, objective: Objective::integral(output) }
         }
-        None => Question { words: format!("`{name}` at the end"), unit, objective: Objective::last(output) },
+        [] => Question { words: format!("`{name}` at the end"), unit, objective: Objective::last(output) },
     })
 }
 

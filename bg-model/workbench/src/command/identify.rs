@@ -11,7 +11,7 @@ use clap::Args;
 use super::arguments::{IntegrationArguments, ModelArguments};
 use super::methods::integrator;
 use super::progress::bar;
-use super::run::{machine, request};
+use super::run::{chosen, machine, request};
 use super::sensitivity::{adjustable, observed, unknown};
 use super::{InputError, ended};
 use crate::Program;
@@ -22,7 +22,6 @@ use crate::identify::data::{pair, read_file};
 use crate::identify::{Data, Identified, Variable, report};
 use crate::inputs;
 use crate::output::OutputError;
-use crate::parameters;
 use crate::scenes::Scene;
 
 const REPORT: &str = "identify.txt";
@@ -71,12 +70,8 @@ pub struct IdentifyArguments {
 }
 
 pub fn identify(program: &Program, arguments: &IdentifyArguments) -> Result<ExitCode, InputError> {
-    let values = &arguments.model;
-    let graph = program.models.graph().description;
-    let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;
-    let (inputs, named_inputs) = inputs::chosen_and_named(&values.input, graph.inputs)?;
-    chosen.inputs = inputs;
-    let scene = program.scene_called(&values.scene);
+    let (chosen, named_inputs) = chosen(program, &arguments.model)?;
+    let scene = program.scene_called(&arguments.model.scene);
     let outputs = scene.description.outputs;
     let mut variables: Vec<Variable> =
         adjustable(scene, &chosen, &arguments.fit, "--fit")?.into_iter().map(variable).collect();

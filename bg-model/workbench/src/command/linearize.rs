@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use bg_model::run::{Request, State};
 
 use super::arguments::{IntegrationArguments, LinearizeArguments};
-use super::run::{follow, machine, request};
+use super::run::{chosen, follow, machine, request};
 use super::{InputError, ended};
 use crate::Program;
 use crate::figures::FigureError;
@@ -15,7 +15,7 @@ use crate::inputs;
 use crate::linear::{Response, StateSpace, logarithmic, responses_csv};
 use crate::machine::Machine;
 use crate::output::OutputError;
-use crate::parameters::{self, Chosen};
+use crate::parameters::Chosen;
 use crate::running::at_rest;
 use crate::scenes::Scene;
 
@@ -33,12 +33,8 @@ const LINEAR: &str = "linear models";
 
 pub fn linearize(program: &Program, arguments: &LinearizeArguments) -> Result<ExitCode, InputError> {
     check_time("--at", arguments.at)?;
-    let values = &arguments.model;
-    let graph = program.models.graph().description;
-    let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&values.input, graph.inputs)?;
-    chosen.inputs = inputs;
-    let scene = program.scene_called(&values.scene);
+    let (chosen, named) = chosen(program, &arguments.model)?;
+    let scene = program.scene_called(&arguments.model.scene);
     let folder = RunFolder::claim(&arguments.out, &names(scene))?;
     let (space, sentence) = here(program, scene, &chosen, arguments)?;
     let inputs = inputs::text(&named, [0.0, arguments.at.unwrap_or(0.0)]);

@@ -50,7 +50,7 @@ use crate::running::BeginError;
 use crate::samples::Unreadable;
 use crate::scenes::Fixed;
 use crate::sweep::SweepError;
-use crate::tables::{self, Part};
+use crate::tables;
 use arguments::{Cli, Command, GoldenCommand};
 use fmu::LibraryError;
 pub(crate) use linearize::space as linearised;
@@ -143,7 +143,6 @@ pub(crate) fn main(program: &Program, arguments: impl IntoIterator<Item = OsStri
 }
 
 fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
-    let print = |scene: &str, part| Ok(say(&tables::graph(program.scene_called(scene), Some(part))));
     match command {
         Command::Run(arguments) => run::simulate(program, &arguments, None),
         Command::Report(arguments) => report::report(program, &arguments),
@@ -154,7 +153,6 @@ fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
         Command::Sweep(arguments) => sweep::obey(program, &arguments),
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Identify(arguments) => identify::identify(program, &arguments),
-        Command::Gradient(arguments) => gradient::gradient(program, &arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.models.scenes))),
         Command::Scene { scene: Some(name) } => {
@@ -162,8 +160,6 @@ fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
         }
         Command::Graph(arguments) => graph::graph(program, &arguments),
         Command::Fmu(arguments) => fmu::pack(program, &arguments),
-        Command::States { scene } => print(&scene, Part::States),
-        Command::Equations { scene } => print(&scene, Part::Equations),
         Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&program.models.defaults()))),
         Command::Parameters { toml: false } => Ok(say(&parameters::table(program.models.defaults().table()))),
     }

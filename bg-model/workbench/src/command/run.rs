@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use bg_model::run::{Request, RunError, State, sample_times};
 use bg_model::simulation::{MissingColumn, Part};
 
-use super::arguments::{IntegrationArguments, RunArguments, Start};
+use super::arguments::{IntegrationArguments, ModelArguments, RunArguments, Start};
 use super::progress::{over_time, ticks};
 use super::report::Look;
 use super::{InputError, ended};
@@ -75,6 +75,15 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     };
     faults.extend(saved.and_then(Result::err));
     Ok(ended(faults.into_iter().chain(failure)))
+}
+
+/// The parameters and inputs that the arguments choose, and what is said of the inputs.
+pub fn chosen(program: &Program, arguments: &ModelArguments) -> Result<(Chosen, Vec<Named>), InputError> {
+    let graph = program.models.graph().description;
+    let mut chosen = parameters::merge(graph.parameters, arguments.params.as_deref(), &arguments.set)?;
+    let (inputs, named) = inputs::chosen_and_named(&arguments.input, graph.inputs)?;
+    chosen.inputs = inputs;
+    Ok((chosen, named))
 }
 
 /// The model of a scene with the parameters chosen for the whole table.

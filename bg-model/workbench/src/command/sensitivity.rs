@@ -10,7 +10,8 @@ use bg_model::simulation::Samples;
 use clap::Args;
 
 use super::arguments::{IntegrationArguments, ModelArguments};
-use super::run::{machine, request};
+use super::gradient::{self, OneNumber};
+use super::run::{chosen, machine, request};
 use super::{InputError, ended};
 use crate::Program;
 use crate::figures::FigureError;
@@ -18,7 +19,7 @@ use crate::figures::influence::influence;
 use crate::files::{FileError, RunFolder, console};
 use crate::inputs;
 use crate::output::OutputError;
-use crate::parameters::{self, Chosen, nearest};
+use crate::parameters::{Chosen, nearest};
 use crate::scenes::Scene;
 use crate::sensitivity::{
     Course, Influence, Measure, Question, courses, courses_csv, csv, influences, text, without_influence,
@@ -47,6 +48,9 @@ pub struct SensitivityArguments {
     #[arg(long = "output", value_name = "NAME", value_delimiter = ',')]
     pub outputs: Vec<String>,
 
+    #[command(flatten)]
+    pub one: OneNumber,
+
     /// Also the outputs at these times, s
     #[arg(long, value_name = "SECONDS", value_delimiter = ',', allow_negative_numbers = true)]
     pub at: Vec<f64>,
@@ -55,30 +59,27 @@ pub struct SensitivityArguments {
     #[arg(long, value_name = "COUNT", default_value_t = 5)]
     pub most: usize,
 
-    /// Folder for sensitivity.txt, sensitivity.csv, sensitivity_over_time.csv and sensitivity.svg
+    /// Folder for sensitivity.txt, sensitivity.csv, sensitivity_over_time.csv and sensitivity.svg; of one number for
+    /// gradient.txt and gradient.csv
     #[arg(long, value_name = "DIR", default_value = "out/sensitivity")]
     pub out: PathBuf,
 }
 
 pub fn sensitivity(program: &Program, arguments: &SensitivityArguments) -> Result<ExitCode, InputError> {
-    let values = &arguments.model;
-    let graph = program.models.graph().description;
-    let mut chosen = parameters::merge(graph.parameters, values.params.as_deref(), &values.set)?;
-    let (inputs, named) = inputs::chosen_and_named(&values.input, graph.inputs)?;
-    chosen.inputs = inputs;
-    let scene = program.scene_called(&values.scene);
+    if arguments.one.is_asked() {
+        return gradient::gradient(program, arguments);
+    }
+    let (chosen, named) = chosen(program, &arguments.model)?;
+    let scene = program.scene_called(&arguments.model.scene);
     let parameters = adjustable(scene, &chosen, &arguments.by, "--by")?;
     let outputs = observed(scene, &arguments.outputs, "--output")?;
-    let end = arguments.integration.t_end;
-    if let Some(&value) = arguments.at.iter().find(|at| !(0.0..=end).contains(*at)) {
-        return Err(InputError::Range { name: "--at", value, range: format!("a time in the run, 0 to {end} s") });
-    }
-    let request = with_times(request(&arguments.integration, 0.0, None)?, &arguments.at);
+    let at = at(&arguments.at, arguments.integration.t_end)?;
+    let request = with_times(request(&arguments.integration, 0.0, None)?, at);
     let names = [TABLE, CSV, COURSES, FIGURE].map(str::to_owned);
     let folder = RunFolder::claim(&arguments.out, &names)?;
     let found = differentiated(program, scene, &chosen, &request, &parameters)?;
     let mut measures = Measure::ALL.to_vec();
-    measures.extend(arguments.at.iter().map(|&t| Measure::At(t)));
+    measures.extend(at.iter().map(|&t| Measure::At(t)));
     let question = Question { outputs: &outputs, parameters: &parameters, measures: &measures };
     let all = influences(&found, &question);
     let inputs = inputs::text(&named, [0.0, found.trajectory.last.t]);
@@ -89,6 +90,16 @@ pub fn sensitivity(program: &Program, arguments: &SensitivityArguments) -> Resul
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
     let printed = console::print(&format!("{told}\nwritten: {written}\n"));
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
+}
+
+/// These times, all of them in a run that ends at `end` (s).
+pub fn at(times: &[f64], end: f64) -> Result<&[f64], InputError> {
+    match times.iter().find(|at| !(0.0..=end).contains(*at)) {
+        Some(&value) => {
+            Err(InputError::Range { name: "--at", value, range: format!("a time in the run, 0 to {end} s") })
+        }
+        None => Ok(times),
+    }
 }
 
 /// The parameters of these names with their values, of a scene; without names all that it leaves adjustable.

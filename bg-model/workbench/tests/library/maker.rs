@@ -93,7 +93,7 @@ fn what_a_model_has_not_got_is_told_in_a_sentence() {
     assert_eq!(fault.to_string(), told("derivatives by parameters"));
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out").display().to_string();
-    for command in ["gradient --of x", "precision --rtol 1e-6"] {
+    for command in ["sensitivity --of x", "precision --rtol 1e-6"] {
         let words = ["slide"].into_iter().chain(command.split(' ')).chain(["--out", &out]).map(Into::into);
         assert_eq!(Program::with(Bare).main(words.collect::<Vec<_>>()), ExitCode::from(2), "{command}");
     }

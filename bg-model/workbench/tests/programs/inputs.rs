@@ -91,7 +91,7 @@ fn an_input_that_was_not_given_is_said_to_be_0() {
     for command in [
         &["linearize", "--at", "0.1"][..],
         &["sensitivity", "--t-end", "0.5", "--by", "mass", "--out", "s"],
-        &["gradient", "--of", "x", "--t-end", "0.5", "--atol", "1e-9"],
+        &["sensitivity", "--of", "x", "--t-end", "0.5", "--atol", "1e-9"],
         &["compare", "literal", "literal", "--t-end", "0.5"],
     ] {
         assert_eq!(lines(&text(path, command), "inputs not given"), [note], "{command:?}");
