@@ -6,13 +6,16 @@ use bg_loaded::{Interpreted, load};
 use bg_model::extended::{Accuracy, outputs};
 use bg_model::input::Input;
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::{Followed, Liftable, Mechanism};
+use bg_model::mechanism::{Followed, Liftable, Mechanism, Reversible};
 use bg_model::parameters::Parameters;
 use bg_model::run::Request;
 use bg_model::scalar::DoubleDouble;
-use bg_model::sensitivity::{Direction, Sensitivities, differences, sensitivities};
+use bg_model::sensitivity::{
+    Direction, Objective, Sensitivities, SensitivityError, differences, gradient, sensitivities,
+};
 use bg_model::simulation::Samples;
 use bond_graph_tests::models::double_pendulum::DoublePendulum;
+use bond_graph_tests::models::free_body::FreeBody;
 use bond_graph_tests::models::mass_spring_damper::MassSpringDamper;
 use bond_graph_tests::models::stick_slip::StickSlip;
 
@@ -58,6 +61,47 @@ fn derivatives_of_runs_are_those_of_the_compiled_model() {
     same_studies::<DoublePendulum>("double_pendulum.rs", 0.005);
     same_studies::<MassSpringDamper>("mass_spring_damper.rs", 0.2);
     same_studies::<StickSlip>("stick_slip.rs", 2.0);
+}
+
+/// All derivatives of a number of both runs followed backwards, to the bit but for signs of zeros, and near to slopes.
+fn same_gradients<Me: Mechanism>(call: &str, t_end: f64) {
+    let (compiled, loaded) = both::<Me>(call);
+    let mut by = Direction::parameters::<Me>();
+    by.extend((0..Me::describe().states.len()).map(Direction::Start));
+    let request = Request { method: Integrator::Dop853, t_end, rtol: 1e-10, ..Request::default() };
+    let objective = Objective::last(0).plus(Objective::integral(0).times(0.1));
+    let both: [&dyn Reversible; 2] = [&loaded, &compiled];
+    let bits = |values: &[f64]| values.iter().map(|value| (value + 0.0).to_bits()).collect::<Vec<_>>();
+    let [ours, theirs] = both.map(|of| gradient(of, &request, &objective, &by).expect("a gradient"));
+    assert_eq!(bits(&ours.by), bits(&theirs.by), "{}", Me::describe().name);
+    assert_eq!(bits(&[ours.value]), bits(&[theirs.value]), "{}", Me::describe().name);
+    assert!(ours.by.iter().any(|&by| by != 0.0));
+}
+
+#[test]
+fn gradients_are_those_of_the_compiled_model() {
+    same_gradients::<MassSpringDamper>("mass_spring_damper.rs", 0.2);
+    same_gradients::<StickSlip>("stick_slip.rs", 2.0);
+    same_gradients::<FreeBody>("free_body.rs", 0.1);
+}
+
+/// Of a model whose sweeps are too long to be compiled: the last values of two outputs against slopes.
+#[test]
+fn a_long_model_of_text_has_gradients() {
+    let (compiled, loaded) = both::<DoublePendulum>("double_pendulum.rs");
+    let request = Request { method: Integrator::Dop853, t_end: 0.02, rtol: 1e-10, ..Request::default() };
+    let by = Direction::parameters::<DoublePendulum>();
+    let refused = gradient(&compiled, &request, &Objective::last(0), &by).expect_err("it is long");
+    assert!(matches!(refused, SensitivityError::NoReverseSweep { .. }));
+    let slopes = sensitivities(&loaded, &request, &by).expect("slopes");
+    for output in 0..2 {
+        let found = gradient(&loaded, &request, &Objective::last(output), &by).expect("a gradient");
+        let slope = |direction: usize| *slopes.of(direction, output).last().expect("samples");
+        let size = (0..by.len()).map(|k| slope(k).abs()).fold(1.0, f64::max);
+        for (k, by) in found.by.iter().enumerate() {
+            assert!((by - slope(k)).abs() <= 1e-9 * size, "{output} {k}: {by:e} {:e}", slope(k));
+        }
+    }
 }
 
 #[test]

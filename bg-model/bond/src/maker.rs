@@ -87,7 +87,10 @@ impl Maker for Loaded {
 
     fn make(&self, model: usize, own: &[f64], inputs: &[Input]) -> Result<Box<dyn Machine>, ParameterError> {
         let model = Interpreted::new(self.blueprint(model), own, inputs)?.by(self.back_end);
-        Ok(Box::new(Studied::new(model)))
+        Ok(Box::new(cfg_select! {
+            target_arch = "wasm32" => Studied::new(model),
+            _ => Studied::reversible(model),
+        }))
     }
 
     fn prebuilt(&self, model: usize) -> Option<Prebuilt> {

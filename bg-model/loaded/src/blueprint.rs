@@ -9,8 +9,8 @@ use std::sync::Arc;
 use bg_compiler::expr::Symbol;
 use bg_compiler::pipeline::Compiled;
 use bg_compiler::program::{
-    Deferred, Derivatives, Operand, Operation, Program, Programs, Routine, Running, SecondOrderPrograms, Starting,
-    deferred,
+    Deferred, Derivatives, Operand, Operation, Program, Programs, Reverse, Reversed, Routine, Running,
+    SecondOrderPrograms, Starting, deferred, reversed,
 };
 use bg_compiler::tables::{self, Counted, EliminationTable, Loop};
 use bg_model::linear::Sparsity;
@@ -80,6 +80,25 @@ pub struct Codes {
     pub not_finite: Alone,
     pub pivots: Option<Alone>,
     pub series: Deferred<SeriesCode>,
+    pub sweeps: Deferred<Sweeps>,
+}
+
+/// The reverse sweeps of the programs that a run is made of, which have the same constants.
+#[derive(Debug)]
+pub struct Sweeps {
+    pub rate: Sweep,
+    /// None where outputs read reactions.
+    pub outputs: Option<Sweep>,
+    pub project: Sweep,
+    pub settle: Sweep,
+}
+
+/// How a weighted sum of a program's results depends on states and constants.
+#[derive(Debug)]
+pub struct Sweep {
+    pub code: Code,
+    /// By what each of its results is the derivative: states and constants.
+    pub leaves: Vec<Operand>,
 }
 
 /// The derivatives of the rates.
@@ -211,8 +230,9 @@ fn codes(programs: Programs, rows: &Rows, states: usize, damped: Vec<(usize, usi
         pivots,
         ..
     } = programs;
+    let running = Arc::new(running);
     let Running { constants, rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers } =
-        &running;
+        &*running;
     let Starting { guesses, gaps, gap_sizes, start_state, sides } = &starting;
     // The unknowns of iterations come after the rates: only series have a use for them.
     let rates = Routine { results: rate.results[..states].to_vec(), ..rate.clone() };
@@ -242,10 +262,19 @@ fn codes(programs: Programs, rows: &Rows, states: usize, damped: Vec<(usize, usi
         not_finite: alone(&not_finite),
         pivots: some(&pivots),
         series: {
-            let rate = running.rate;
-            deferred(move || SeriesCode::of(&rate, finds))
+            let running = Arc::clone(&running);
+            deferred(move || SeriesCode::of(&running.rate, finds))
         },
+        sweeps: sweeps(running, rows.clone(), states),
     }
+}
+
+fn sweeps(running: Arc<Running>, rows: Rows, states: usize) -> Deferred<Sweeps> {
+    deferred(move || {
+        let of = |Reverse { routine, leaves }: &Reverse| Sweep { code: rows.code(routine), leaves: leaves.clone() };
+        let Reversed { rate, outputs, project, settle } = &reversed(&running, states);
+        Sweeps { rate: of(rate), outputs: outputs.as_ref().map(of), project: of(project), settle: of(settle) }
+    })
 }
 
 fn derivative_codes(of: Deferred<Derivatives>, rows: Rows, damped: Vec<(usize, usize)>) -> Deferred<DerivativeCodes> {

@@ -66,6 +66,10 @@ pub(crate) struct Rows<S: Scalar> {
     pub not_finite: Own<S>,
     pub pivots: Own<S>,
     pub series: OnceCell<RefCell<SeriesRow<S>>>,
+    pub reverse_rate: Own<S>,
+    pub reverse_outputs: Own<S>,
+    pub reverse_project: Own<S>,
+    pub reverse_settle: Own<S>,
 }
 
 /// A row of a program with constants of its own.
@@ -80,11 +84,13 @@ pub(crate) struct Moment<'a, S: Scalar> {
     pub found: &'a [S],
     pub reactions: &'a [S],
     pub rates: &'a [S],
+    /// Of the results of a program that is followed backwards.
+    pub weights: &'a [S],
 }
 
 impl<'a, S: Scalar> Moment<'a, S> {
     pub const fn at(t: S, x: &'a [S], negative: &'a [S::Switch]) -> Self {
-        Self { t, x, negative, found: &[], reactions: &[], rates: &[] }
+        Self { t, x, negative, found: &[], reactions: &[], rates: &[], weights: &[] }
     }
 }
 
@@ -163,6 +169,7 @@ impl<S: Scalar> Interpreted<S> {
             Symbol::Found(index) => moment.found[index as usize],
             Symbol::Multiplier(index) => moment.reactions[index as usize],
             Symbol::Rate(index) => moment.rates[index as usize],
+            Symbol::Weight(index) => moment.weights[index as usize],
             Symbol::Kept(index) => S::from_f64(self.decided.kept[index as usize]),
             Symbol::Side(index) => S::from_f64(self.decided.sides[index as usize]),
             _ => unreachable!("no program of a running model reads {symbol:?}"),
@@ -321,6 +328,10 @@ impl<S: Scalar> Rows<S> {
             not_finite: OnceCell::new(),
             pivots: OnceCell::new(),
             series: OnceCell::new(),
+            reverse_rate: OnceCell::new(),
+            reverse_outputs: OnceCell::new(),
+            reverse_project: OnceCell::new(),
+            reverse_settle: OnceCell::new(),
         }
     }
 }

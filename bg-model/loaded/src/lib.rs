@@ -11,6 +11,7 @@ mod interpreted;
 mod machine;
 mod series;
 mod statics;
+mod swept;
 mod text;
 
 pub use bg_compiler::source::syntax::files::{Open, Opened};

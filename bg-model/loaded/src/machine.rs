@@ -11,23 +11,43 @@ use bg_model::assembly::AssemblyError;
 use bg_model::capability::{Operations, SeriesSize};
 use bg_model::description::{Description, StateInfo};
 use bg_model::drawing;
-use bg_model::dynamics::{Dynamics, Machine, Rates};
+use bg_model::dynamics::{Dynamics, Machine, Rates, Swept};
 use bg_model::failure::Origin;
 use bg_model::holding::{Held, Redundancy, Stops};
 use bg_model::input::{Input, next_break};
 use bg_model::linear::table::{eliminate, substitute};
 use bg_model::linear::{Field, Sparsity};
-use bg_model::mechanism::{Differentiable, Joinable, Liftable, SideBySide};
+use bg_model::mechanism::{Differentiable, Joinable, Liftable, Reversible, SideBySide};
 use bg_model::nalgebra::Complex;
 use bg_model::parameters::ParameterError;
 use bg_model::scalar::{Gradient, GradientIn, Scalar, Slopes};
 use bg_model::start::{StartRoutine, StartTable, Starting, redundant, start};
 use bg_model::system::Powers;
 
+use crate::code::{Code, Row};
 use crate::interpreted::{Interpreted, Moment, of_parameters};
 use crate::series::Expansion;
 
 impl<S: Scalar> Interpreted<S> {
+    /// Projects the states of the pose.
+    pub(crate) fn pose(&self, t: S, negative: &[S::Switch], x: &mut [S]) {
+        self.moved((&self.blueprint.projected, &self.programs().project, &self.rows.project), t, negative, x);
+    }
+
+    /// Gives the states of a list what a program says.
+    fn moved(
+        &self,
+        (moved, code, row): (&[usize], &Code, &RefCell<Row<S>>),
+        t: S,
+        negative: &[S::Switch],
+        x: &mut [S],
+    ) {
+        if !moved.is_empty() {
+            let projected = self.listed(code, row, Moment::at(t, x, negative));
+            moved.iter().zip(projected).for_each(|(&state, value)| x[state] = value);
+        }
+    }
+
     /// Solves for `b` with the factors of an elimination.
     fn substituted<T: Scalar, F: Field<T>>(&self, factors: &[F], b: &mut [F]) {
         let of = &self.blueprint.elimination;
@@ -60,17 +80,8 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn project(&self, t: S, negative: &[S::Switch], x: &mut [S]) {
-        let blueprint = &self.blueprint;
-        let steps = [
-            (&blueprint.projected, &blueprint.programs.project, &self.rows.project),
-            (&blueprint.settled, &blueprint.programs.settle, &self.rows.settle),
-        ];
-        for (moved, code, row) in steps {
-            if !moved.is_empty() {
-                let projected = self.listed(code, row, Moment::at(t, x, negative));
-                moved.iter().zip(projected).for_each(|(&state, value)| x[state] = value);
-            }
-        }
+        self.pose(t, negative, x);
+        self.moved((&self.blueprint.settled, &self.programs().settle, &self.rows.settle), t, negative, x);
     }
 
     fn next_break(&self, t: f64) -> f64 {
@@ -300,6 +311,10 @@ impl<S: Scalar> Machine<S> for Interpreted<S> {
         let powers = self.listed(&self.programs().powers, &self.rows.powers, Moment::at(t, x, negative));
         Powers { supplied: powers[0], dissipated: powers[1] }
     }
+
+    fn constants(&self) -> &[S] {
+        &self.constants
+    }
 }
 
 impl<S: Scalar> Interpreted<S> {
@@ -363,6 +378,12 @@ impl Differentiable for Interpreted {
 impl<S: Scalar> Liftable<S> for Interpreted {
     fn lifted(&self, values: &[S]) -> Result<Rc<dyn Machine<S>>, ParameterError> {
         Ok(Rc::new(Interpreted::of_values(&self.blueprint, values.to_vec(), &self.inputs)?.by(self.back_end)))
+    }
+}
+
+impl Reversible for Interpreted {
+    fn swept(&self) -> Option<Rc<dyn Swept>> {
+        Some(Rc::new(self.in_scalar::<f64>()))
     }
 }
 

@@ -181,10 +181,18 @@ impl<Mo: Differentiable> Studied<Mo> {
 }
 
 #[cfg(not(target_arch = "wasm32"))]
-impl<Mo: Reversible + Accompanied> Studied<Mo> {
+impl<Mo: Reversible> Studied<Mo> {
+    /// That of `model`, with gradients.
+    pub fn reversible(model: Mo) -> Self {
+        Self { reversible: Some(|model| model), ..Self::new(model) }
+    }
+
     /// That of `model`, with all.
-    pub fn complete(model: Mo) -> Self {
-        Self { reversible: Some(|model| model), accompanied: Some(|model| model), ..Self::new(model) }
+    pub fn complete(model: Mo) -> Self
+    where
+        Mo: Accompanied,
+    {
+        Self { accompanied: Some(|model| model), ..Self::reversible(model) }
     }
 }
 

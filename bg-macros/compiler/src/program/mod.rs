@@ -17,6 +17,6 @@ pub use bg_expressions::schedule::{
 pub use changes::Changes;
 pub use deferred::{Deferred, deferred};
 pub use programs::{Derivatives, Pairs, Programs, Running, SecondOrderPrograms, Starting, programs, rate_operations};
-pub use reversed::Reversed;
+pub use reversed::{Reversed, reversed};
 pub use series::{SeriesSize, series_size};
 pub use tape::Tape;

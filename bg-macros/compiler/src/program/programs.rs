@@ -327,10 +327,12 @@ impl Programs {
         })
     }
 
-    /// How what the functions of the running model give depends on states and constants, where that is not too long;
-    /// made when it is first asked for.
+    /// How what the functions of the running model give depends on states and constants; made when it is first asked
+    /// for. None where rates are not inlined: of longer ones the sweeps, three times as long, are too much to check in
+    /// each build.
     pub fn reversed(&self) -> Option<&Reversed> {
-        self.reversed.get_or_init(|| reversed(&self.running, self.states)).as_ref()
+        let made = || self.running.is_inlined().then(|| reversed(&self.running, self.states));
+        self.reversed.get_or_init(made).as_ref()
     }
 
     /// The functions that are called while the model runs, with their operations.

@@ -28,17 +28,17 @@ impl Reversed {
     }
 }
 
-/// The reverse sweeps of the functions of a model with so many states. None where rates are not inlined: of longer ones
-/// the sweeps, three times as long, are too much to check in each build.
-pub fn reversed(running: &Running, states: usize) -> Option<Reversed> {
+/// The reverse sweeps of the functions of a model with so many states.
+#[must_use]
+pub fn reversed(running: &Running, states: usize) -> Reversed {
     let of = |routine: &Routine| reverse(routine, routine.results.len(), &format!("reverse_{}", routine.name));
-    running.is_inlined().then(|| Reversed {
+    Reversed {
         // What iterations find comes after the rates.
         rate: reverse(&running.rate, states, "reverse_rate"),
         outputs: (!reads_reactions(&running.outputs)).then(|| of(&running.outputs)),
         project: of(&running.project),
         settle: of(&running.settle),
-    })
+    }
 }
 
 fn reads_reactions(routine: &Routine) -> bool {
