@@ -5,17 +5,10 @@ use std::rc::Rc;
 
 use bg_loaded::{Graph, Interpreted};
 use bg_model::dynamics::Machine;
-use bg_model::integrator::{Dop853, Tolerances};
-use bg_model::simulation::{Finish, Settings, Span, drive};
+use bg_model::simulation::Finish;
 
+use super::hand::run;
 use super::text::{graphs, model, outputs};
-
-fn run(model: &Interpreted, t_end: f64) -> Finish {
-    let settings = Settings { tolerances: Tolerances::new(1e-11, 1e-12), ..Settings::default() };
-    let span = Span { t0: 0.0, t_end };
-    let finish = drive(model, &mut Dop853::new(), &model.start().unwrap(), span, &settings, None, &mut ());
-    finish.unwrap_or_else(|failure| panic!("{failure}"))
-}
 
 /// Panics unless `scene All { all reactions; }` and `scene Few {}`, which is to have so many states, end alike; gives the
 /// outputs, and how the second run ended.
@@ -23,7 +16,7 @@ fn end_alike(text: &str, states: usize, t_end: f64, bound: f64) -> (Vec<f64>, Fi
     let graphs: Vec<Graph> = graphs(text);
     let of = |name: &str| -> (Rc<Interpreted>, Finish, Vec<f64>) {
         let model = model(&graphs, name, &[]);
-        let finish = run(&model, t_end);
+        let finish = run(&*model, &model.start().unwrap(), t_end);
         let y = outputs(&*model, finish.t, finish.x.as_slice(), &finish.negative);
         (model, finish, y)
     };

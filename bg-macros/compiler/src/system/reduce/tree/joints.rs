@@ -105,6 +105,8 @@ pub(super) struct Joint {
     pub at: [Value; 2],
     /// The state that counts the turns of its angle, where that is the coordinate.
     pub angle: Option<usize>,
+    /// Whether the start looks for its speeds.
+    pub is_sought: bool,
 }
 
 /// The place and the speed of a step, with the cosine and the sine of an angle.
@@ -177,6 +179,7 @@ impl Joint {
             frames: [UNIT; 2],
             at: [Value::zero(pool, 3), Value::zero(pool, 3)],
             angle: None,
+            is_sought: false,
         }
     }
 

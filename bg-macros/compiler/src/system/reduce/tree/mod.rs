@@ -8,11 +8,14 @@
 //! joints that close loops, stops and dry friction, keeps its reactions, which are loads to the tree.
 
 mod bodies;
+mod guessed;
 mod joints;
 mod links;
 mod loads;
+mod loops;
 mod motion;
 mod numbers;
+mod reactions;
 mod recognition;
 mod recursion;
 mod relative;
@@ -22,14 +25,16 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::report::{Fate, Report};
 use super::speeds::of_kind;
 use super::{closing, friction, turned};
-use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, partial, substitute};
+use crate::expr::{Environment, Id, Node, Pool, Symbol, exchange, partial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Kind, Origin, State, StateEquations};
 use bodies::{Body, velocity};
+use guessed::Guessed;
 use joints::{Freedom, Joint, Moves};
 use links::Link;
 use loads::{Loads, Tree};
 use motion::Motion;
+use reactions::Wanted;
 use recursion::{Accelerations, Moved};
 use relative::Coordinated;
 
@@ -52,17 +57,20 @@ pub(super) fn is_put(equations: &StateEquations) -> bool {
 pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option<()> {
     equations.rewrite(&|pool, ids| numbers::folded(pool, ids));
     let bodies = bodies::of(equations);
-    let literal = Literal::of(equations);
+    let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
+    let guessed = Guessed::of(equations, &bodies, &parameters);
+    let mut literal = Literal::of(equations);
     let spins = places_of_spins(&mut equations.pool, &bodies);
     equations.rewrite(&|pool, ids| exchange(pool, ids, &spins));
-    let joints = joints(equations, &bodies)?;
+    let joints = joints(equations, &bodies, (&parameters, &guessed))?;
     let of_bodies: BTreeSet<usize> = joints.iter().flat_map(|joint| bodies[joint.child].states()).collect();
     let given: BTreeSet<usize> = joints.iter().flat_map(|joint| joint.given(&bodies)).collect();
-    release(equations, &joints, &of_bodies)?;
-    literal.keep_mobilities(equations);
+    let wanted = release(equations, (&bodies, &joints), &of_bodies)?;
     let first = 6 * bodies.len() + joints::PROBES;
     let coordinates = motion::coordinates(&mut equations.pool, first, &joints);
     let coordinated = Coordinated { bodies: &bodies, joints: &joints, coordinates: &coordinates };
+    loops::turn(equations, &mut literal, coordinated);
+    literal.keep_mobilities(equations);
     relative::recognise(equations, coordinated);
     let (links, seats) = links::of(&mut equations.pool, &bodies, &joints);
     let tree = Tree { bodies: &bodies, joints: &joints, links: &links, seats: &seats };
@@ -70,10 +78,14 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
     let found = recursion::accelerations(&mut equations.pool, &links, &moved, &motion.spins, &ground);
     let found = linear(equations, &links, found);
-    let starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
+    let mut starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
+    for (_, of_one) in joints.iter().zip(&mut starts).filter(|(joint, _)| joint.is_sought) {
+        of_one.iter_mut().for_each(|[_, speed]| *speed = guessed::sought(equations, *speed));
+    }
     motion.energies(equations, &bodies, &seats);
     let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
     motion.momenta(equations, &tree, &found, &ground);
+    let reactions = wanted.images(&mut equations.pool, &tree, (&moved, &motion, &found), &coordinates)?;
     for (index, body) in bodies.iter().enumerate() {
         for (k, &spin) in body.spin.iter().enumerate() {
             // Of a body on no such joint, which keeps its states.
@@ -99,6 +111,7 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
         places.insert(coordinate, equations.pool.symbol(Symbol::state(state)));
     }
     equations.projections.retain(|(state, _)| kept[*state] && !given.contains(state));
+    equations.replace(&|symbol| reactions.get(&symbol).copied());
     equations.replace(&|symbol| images.get(&symbol).copied());
     equations.replace(&|symbol| places.get(&symbol).copied());
     super::live::keep_states(equations, report, &kept);
@@ -193,28 +206,39 @@ fn names(joint: &Joint, step: usize) -> [String; 2] {
 }
 
 /// The joints of trees on the ground, parents first, where they do not all turn in the plane.
-fn joints(equations: &mut StateEquations, bodies: &[Body]) -> Option<Vec<Joint>> {
-    let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
-    let states = values_at_start(equations, &parameters);
-    let starts = Environment { states: &states, parameters: &parameters, ..Environment::default() };
-    let joints = recognition::of(equations, bodies, &starts);
+fn joints(
+    equations: &mut StateEquations,
+    bodies: &[Body],
+    (parameters, guessed): (&[f64], &Guessed),
+) -> Option<Vec<Joint>> {
+    let states = guessed::starts(equations, parameters, None);
+    let starts = Environment { states: &states, parameters, ..Environment::default() };
+    let joints = recognition::of(equations, bodies, &starts, guessed);
     (!is_planar(&joints)).then_some(joints)
 }
 
-/// Takes the reactions of joints out of the equations; they do not work on the motions of these bodies. None where
-/// something beside their momenta reads one, or one of a loop, which the joints may share.
-fn release(equations: &mut StateEquations, joints: &[Joint], bodies: &BTreeSet<usize>) -> Option<()> {
+/// Takes the reactions of joints out of the equations; they do not work on the motions of these bodies. Gives those that
+/// outputs read. None where something else beside momenta reads one, or an output reads one of a loop, which the joints
+/// may share.
+fn release(
+    equations: &mut StateEquations,
+    (of_tree, joints): (&[Body], &[Joint]),
+    bodies: &BTreeSet<usize>,
+) -> Option<Wanted> {
     let rows: BTreeSet<usize> = joints.iter().flat_map(|joint| joint.rows.iter().copied()).collect();
     let rigid = friction::rigid(&equations.reactions);
     let multiplier = |row: usize| equations.reactions[row].multiplier;
     let gone: BTreeSet<Symbol> = rows.iter().map(|&row| multiplier(row)).collect();
     let closing: BTreeSet<Symbol> = (0..rigid).filter(|row| !rows.contains(row)).map(multiplier).collect();
-    let unknown: BTreeSet<Symbol> =
-        if closing.len() > 1 { gone.union(&closing).copied().collect() } else { gone.clone() };
+    let shared = if closing.len() > 1 { closing.clone() } else { BTreeSet::new() };
     let outputs: Vec<Id> = equations.outputs.iter().map(|output| output.value).collect();
-    if is_read(equations, &gone, bodies) || has_any(&equations.pool, &outputs, &unknown) {
+    let read: BTreeSet<Symbol> = equations.pool.symbols(&outputs).intersection(&gone).copied().collect();
+    let may_be_shared = !closing.is_empty() && !read.is_empty() || has_any(&equations.pool, &outputs, &shared);
+    if may_be_shared || is_read(equations, &gone, bodies) {
         return None;
     }
+    let wanted = Wanted::of(equations, (of_tree, joints), &read);
+    let unknown: BTreeSet<Symbol> = gone.union(&shared).filter(|symbol| !wanted.has(symbol)).copied().collect();
     let StateEquations { pool, states, shown, .. } = equations;
     let zero = pool.zero();
     let rates: Vec<Id> = bodies.iter().map(|&state| states[state].rate).collect();
@@ -224,7 +248,7 @@ fn release(equations: &mut StateEquations, joints: &[Joint], bodies: &BTreeSet<u
     }
     shown.forget(pool, &unknown);
     equations.reactions.retain(|reaction| !gone.contains(&reaction.multiplier));
-    Some(())
+    Some(wanted)
 }
 
 /// The flows of all rows and the rates of all momenta as momenta determine them.
@@ -272,14 +296,6 @@ fn places_of_spins(pool: &mut Pool, bodies: &[Body]) -> BTreeMap<Id, Id> {
         }
     }
     places
-}
-
-/// The values of the states at the start, with these of the parameters and the first guesses.
-fn values_at_start(equations: &StateEquations, parameters: &[f64]) -> Vec<f64> {
-    let given = Environment { parameters, ..Environment::default() };
-    let unknowns = evaluate(&equations.pool, &equations.guesses, &given);
-    let starts: Vec<Id> = equations.states.iter().map(|state| state.start).collect();
-    evaluate(&equations.pool, &starts, &Environment { unknowns: &unknowns, ..given })
 }
 
 /// Whether all joints move in the x-y plane, in which bodies' own momenta take fewer operations.

@@ -49,7 +49,7 @@ pub(super) fn axes(pool: &mut Pool, links: &[Link], before: &[Value], index: usi
 /// Where links and bodies are and how they move.
 pub(super) struct Motion {
     /// The axes of the links in inertial axes.
-    axes: Vec<Value>,
+    pub axes: Vec<Value>,
     /// The origins of the links.
     origins: Vec<Value>,
     /// The angular velocities of the links, in their axes.

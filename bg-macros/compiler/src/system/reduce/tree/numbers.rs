@@ -11,6 +11,9 @@ pub(super) type Matrix = [f64; 9];
 
 pub(super) const UNIT: Matrix = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
 
+/// A row, in parts of its largest number, is as another one below it.
+const DEPENDENT: f64 = 1e-9;
+
 /// What rounding leaves of a component that is 0 or 1.
 const ROUNDING: f64 = 1e-13;
 
@@ -34,6 +37,31 @@ pub(super) fn unit(a: &Vector) -> Option<Vector> {
 
 pub(super) fn are_near(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING)
+}
+
+/// How many of these rows are independent.
+pub(super) fn rank(mut rows: Vec<Vec<f64>>) -> usize {
+    let largest = |row: &[f64]| row.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));
+    rows.iter_mut().for_each(|row| {
+        let size = largest(row);
+        row.iter_mut().for_each(|part| *part /= if size > 0.0 { size } else { 1.0 });
+    });
+    let mut rank = 0;
+    while let Some(pivot) = (rank..rows.len()).max_by(|&a, &b| largest(&rows[a]).total_cmp(&largest(&rows[b]))) {
+        if largest(&rows[pivot]) < DEPENDENT {
+            break;
+        }
+        rows.swap(rank, pivot);
+        let (found, rest) = rows.split_at_mut(rank + 1);
+        let row = &found[rank];
+        let column = (0..row.len()).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())).unwrap_or(0);
+        for other in rest {
+            let factor = other[column] / row[column];
+            other.iter_mut().zip(row).for_each(|(part, by)| *part -= factor * by);
+        }
+        rank += 1;
+    }
+    rank
 }
 
 /// Components that are 0, 1 or -1 but for rounding as these.

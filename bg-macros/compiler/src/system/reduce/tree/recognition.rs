@@ -9,7 +9,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, velocity};
-use super::joints::{Joint, Kind, Moves, Probe, STEPS};
+use super::guessed::Guessed;
+use super::joints::{Freedom, Joint, Kind, Moves, Probe, STEPS};
 use super::numbers::{self, Matrix, UNIT, Vector};
 use crate::expr::{Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute};
 use crate::system::Value;
@@ -19,9 +20,14 @@ use crate::system::reduce::zero::vanishes;
 use crate::system::reduce::{closing, friction, is_constant, turned};
 
 /// The joints of trees on the ground, parents first; `starts` has the values of the states at the start, for guesses.
-pub(super) fn of(equations: &mut StateEquations, bodies: &[Body], starts: &Environment<'_>) -> Vec<Joint> {
+pub(super) fn of(
+    equations: &mut StateEquations,
+    bodies: &[Body],
+    starts: &Environment<'_>,
+    guessed: &Guessed,
+) -> Vec<Joint> {
     let rigid = friction::rigid(&equations.reactions);
-    let given = Given::new(equations, bodies, starts);
+    let given = Given::new(equations, bodies, starts, guessed);
     let rows = closing::of_joints(&equations.reactions, 0..rigid);
     let mut left: Vec<Rows> = rows.into_iter().filter_map(|rows| Rows::of(equations, &given, rows)).collect();
     let mut tree: Vec<Joint> = Vec::new();
@@ -93,10 +99,11 @@ struct Given<'a> {
     /// The states that count turns, with sine and cosine.
     angles: Vec<(usize, [Id; 2])>,
     starts: &'a Environment<'a>,
+    guessed: &'a Guessed,
 }
 
 impl<'a> Given<'a> {
-    fn new(equations: &mut StateEquations, bodies: &[Body], starts: &'a Environment<'a>) -> Self {
+    fn new(equations: &mut StateEquations, bodies: &[Body], starts: &'a Environment<'a>, guessed: &'a Guessed) -> Self {
         let angles = turned::angles(equations);
         let StateEquations { pool, states, .. } = equations;
         let (mut owner, mut speeds) = (BTreeMap::new(), BTreeMap::new());
@@ -121,7 +128,7 @@ impl<'a> Given<'a> {
                 loaded.entry(multiplier).or_default().push(index);
             }
         }
-        Self { owner, speeds, by_velocities, by_momenta, loaded, angles, starts }
+        Self { owner, speeds, by_velocities, by_momenta, loaded, angles, starts, guessed }
     }
 }
 
@@ -155,7 +162,17 @@ fn joint(
     };
     let of_translations: Vec<Id> = translations.iter().map(|&row| gaps[row]).collect();
     let at = points(pool, ends, (&of_translations, &along))?;
-    let joint = Joint { name, rows, parent, child, kind, frames: axes, at, angle: None };
+    let joint = Joint {
+        name,
+        rows,
+        parent,
+        child,
+        kind,
+        frames: axes,
+        at,
+        angle: None,
+        is_sought: given.guessed.is_sought(child),
+    };
     let joint = by_its_angle(pool, bodies, joint, &given.angles);
     let is_proved = holds(equations, bodies, &joint, (&flows, &gaps))
         && starts_so(equations, bodies, &joint, given)
@@ -208,6 +225,9 @@ fn by_its_angle(pool: &mut Pool, bodies: &[Body], joint: Joint, angles: &[(usize
     }
     joint
 }
+
+/// The cosine of an angle by which the first guess of a pose may be wrong.
+const NEAR: f64 = 0.5;
 
 /// A body at both ends of a joint; the ground where there is none.
 type Ends<'a> = [Option<&'a Body>; 2];
@@ -350,16 +370,17 @@ fn holds(equations: &mut StateEquations, bodies: &[Body], joint: &Joint, (flows,
     [along, about].iter().all(|directions| are_independent(pool, &probe, directions))
 }
 
-/// Whether directions span as much at all angles: their products with each other are trigonometric polynomials of the
-/// second degree in each angle, and so constant where they are the same at five places.
-fn are_independent(pool: &Pool, probe: &Probe, directions: &[[Id; 3]]) -> bool {
+/// Directions at so many angles that their products with each other, trigonometric polynomials of the second degree in
+/// each angle, are constant where they are the same at all of them: five places of each. None where something else is
+/// in them.
+pub(super) fn at_places(pool: &Pool, probe: &Probe, directions: &[[Id; 3]]) -> Option<Vec<Vec<Vector>>> {
     const PLACES: usize = 5;
-    const LEAST: f64 = 1e-6;
     let ids: Vec<Id> = directions.concat();
-    let last = probe.symbols[STEPS - 1][3];
-    let Symbol::Weight(last) = last else { return false };
-    let mut found: Option<Vec<f64>> = None;
-    for sample in 0..PLACES.pow(2) {
+    let Symbol::Weight(last) = probe.symbols[STEPS - 1][3] else { return None };
+    if pool.symbols(&ids).into_iter().any(|symbol| !matches!(symbol, Symbol::Weight(_))) {
+        return None;
+    }
+    let at = |sample: usize| {
         let mut weights = vec![f64::NAN; last as usize + 1];
         for (symbols, place) in probe.symbols.iter().zip([sample % PLACES, sample / PLACES]) {
             let angle = std::f64::consts::TAU * place as f64 / PLACES as f64 + 0.3;
@@ -369,11 +390,18 @@ fn are_independent(pool: &Pool, probe: &Probe, directions: &[[Id; 3]]) -> bool {
                 }
             }
         }
-        if pool.symbols(&ids).into_iter().any(|symbol| !matches!(symbol, Symbol::Weight(_))) {
-            return false;
-        }
         let values = evaluate(pool, &ids, &Environment { weights: &weights, ..Environment::default() });
-        let rows: Vec<Vector> = values.chunks(3).map(|of| [of[0], of[1], of[2]]).collect();
+        values.chunks(3).map(|of| [of[0], of[1], of[2]]).collect()
+    };
+    Some((0..PLACES.pow(2)).map(at).collect())
+}
+
+/// Whether directions span as much at all angles.
+fn are_independent(pool: &Pool, probe: &Probe, directions: &[[Id; 3]]) -> bool {
+    const LEAST: f64 = 1e-6;
+    let mut found: Option<Vec<f64>> = None;
+    let Some(places) = at_places(pool, probe, directions) else { return false };
+    for rows in places {
         let products: Vec<f64> = rows.iter().flat_map(|a| rows.iter().map(|b| numbers::dot(a, b))).collect();
         let size = match rows[..] {
             [] => 1.0,
@@ -407,6 +435,18 @@ fn starts_so(equations: &mut StateEquations, bodies: &[Body], joint: &Joint, giv
         Kind::Prismatic | Kind::Fixed => &[0, 1, 2],
         Kind::Universal | Kind::Spherical | Kind::Floating => &[],
     };
+    let steps = joint.steps();
+    let slides = steps.iter().any(|step| step.freedom == Freedom::Slide);
+    if !given.guessed.fits(joint.parent, joint.child, slides) {
+        return false;
+    }
+    let are_near = |column: usize| {
+        let [a, b] = [0, 1].map(|end| {
+            let body = [joint.parent, Some(joint.child)][end].map(|body| &bodies[body]);
+            numbers::applied(&turned(body, given.starts), &numbers::column(&joint.frames[end], column))
+        });
+        numbers::dot(&a, &b) > NEAR
+    };
     let mut all = Vec::new();
     for &column in together {
         let [a, b] = [0, 1].map(|end| {
@@ -414,11 +454,19 @@ fn starts_so(equations: &mut StateEquations, bodies: &[Body], joint: &Joint, giv
             axes[end].multiply(pool, &axis)
         });
         let back = b.negate(pool);
-        all.extend(a.add(pool, &back).0);
+        let apart = a.add(pool, &back).0;
+        // The pose that is looked for brings them together, if not to opposite sides.
+        let is_sought = pool.symbols(&apart).into_iter().any(|symbol| matches!(symbol, Symbol::Unknown(_)));
+        if !is_sought {
+            all.extend(apart);
+        } else if !are_near(column) {
+            return false;
+        }
     }
     let flows: Vec<Id> = joint.rows.iter().map(|&row| reactions[row].slip.flow).collect();
     let flows = substitute(pool, &flows, &|symbol| given.by_momenta.get(&symbol).copied());
-    all.extend(substitute(pool, &flows, &|symbol| symbol.as_state().map(|state| states[state].start)));
+    let flows = substitute(pool, &flows, &|symbol| symbol.as_state().map(|state| states[state].start));
+    all.extend(flows.into_iter().filter(|&flow| !given.guessed.has(pool, flow)));
     let all = numbers::folded(pool, &all);
     all.into_iter().all(|id| vanishes(pool, id))
 }

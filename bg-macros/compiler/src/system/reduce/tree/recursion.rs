@@ -222,7 +222,7 @@ fn rigid(pool: &mut Pool, link: &Link, own: &Moved, square: &Value) -> Articulat
 }
 
 /// w x (w x ) as a matrix, w w^T - w^2.
-fn square(pool: &mut Pool, spin: &Value) -> Value {
+pub(super) fn square(pool: &mut Pool, spin: &Value) -> Value {
     let w = &spin.0;
     let squares: Vec<Id> = w.iter().map(|&part| pool.powi(part, 2)).collect();
     Value(
@@ -387,7 +387,7 @@ fn rotated(pool: &mut Pool, [c, s]: [Id; 2], [x, y]: [Id; 2]) -> [Id; 2] {
 }
 
 /// A vector of a link in its parent's axes.
-fn up(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
+pub(super) fn up(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
     if let Some(own) = &own.own {
         return own.turned.multiply(pool, of);
     }

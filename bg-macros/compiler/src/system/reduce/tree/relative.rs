@@ -3,7 +3,8 @@
 //! In: equations over poses and velocities of bodies, joints with their coordinates. Out: the same with sums that read a
 //! body and some that it carries, by their relative motion alone, written by the coordinates of the joints between them.
 //! Method: such a sum is the same whatever the pose and the motion of the body that carries the others are; it is proved
-//! for a rotation of four symbols, by the polynomial identity. Terms that have no body in common are looked at apart.
+//! for a rotation of four symbols, by values at places drawn at random, where it is no analytic function by the polynomial
+//! identity. Terms that have no body in common are looked at apart.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,9 +13,10 @@ use super::joints::{Joint, Moves, Probe};
 use crate::expr::{Id, Node, Pool, Symbol, children, exchange, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
+use crate::system::reduce::zero::vanishes_at_places;
 
-/// More bodies are not looked at together.
-const MOST: usize = 3;
+/// More bodies are not looked at together: those that a sum reads, and those between them.
+const MOST: usize = 8;
 /// Nor sums that read more.
 const READ: usize = 6;
 
@@ -37,12 +39,7 @@ type Images = BTreeMap<Symbol, Id>;
 
 /// Writes what depends on relative motions alone by coordinates.
 pub(super) fn recognise(equations: &mut StateEquations, tree: Coordinated<'_>) {
-    let mut owner: BTreeMap<Symbol, usize> = BTreeMap::new();
-    for (index, body) in tree.bodies.iter().enumerate() {
-        owner.extend((0..6).map(|k| (velocity(index, k), index)));
-        let states = body.place.iter().chain(&body.axes).chain(&body.linear);
-        owner.extend(states.map(|&state| (Symbol::state(state), index)));
-    }
+    let owner = owners(tree.bodies);
     equations.rewrite(&|pool, ids| {
         let nodes = pool.reachable(ids);
         let reads = reads(pool, &nodes, &owner);
@@ -70,11 +67,22 @@ pub(super) fn recognise(equations: &mut StateEquations, tree: Coordinated<'_>) {
     });
 }
 
+/// Whose velocities and states symbols are.
+pub(super) fn owners(bodies: &[Body]) -> BTreeMap<Symbol, usize> {
+    let mut owner: BTreeMap<Symbol, usize> = BTreeMap::new();
+    for (index, body) in bodies.iter().enumerate() {
+        owner.extend((0..6).map(|k| (velocity(index, k), index)));
+        let states = body.place.iter().chain(&body.axes).chain(&body.linear);
+        owner.extend(states.map(|&state| (Symbol::state(state), index)));
+    }
+    owner
+}
+
 fn reads(pool: &Pool, nodes: &[Id], owner: &BTreeMap<Symbol, usize>) -> BTreeMap<Id, Reads> {
     let mut reads: BTreeMap<Id, Reads> = BTreeMap::new();
     for &id in nodes {
         let own = match pool.node(id) {
-            Node::Number(_) => Some(BTreeSet::new()),
+            Node::Number(_) | Node::Symbol(Symbol::Parameter(_)) => Some(BTreeSet::new()),
             Node::Symbol(symbol) => owner.get(symbol).map(|&body| BTreeSet::from([body])),
             Node::Select { .. } => None,
             node => children(node).try_fold(BTreeSet::new(), |mut all, child| {
@@ -109,21 +117,31 @@ fn apart(terms: &Terms, reads: &BTreeMap<Id, Reads>) -> Vec<(BTreeSet<usize>, Te
 fn shorter(pool: &mut Pool, sum: Id, [still, anyhow]: &[Images; 2]) -> Option<Id> {
     let [simple, any] =
         [still, anyhow].map(|images| substitute(pool, &[sum], &|symbol| images.get(&symbol).copied())[0]);
-    (pool.cost(&[simple]) < pool.cost(&[sum]) && same_polynomial(pool, simple, any)).then_some(simple)
+    if pool.cost(&[simple]) >= pool.cost(&[sum]) {
+        return None;
+    }
+    let apart = pool.sub(simple, any);
+    let is_proved = vanishes_at_places(pool, apart).unwrap_or_else(|| same_polynomial(pool, simple, any));
+    is_proved.then_some(simple)
 }
 
-/// The motion of these bodies by that of one of them, which carries the others: that one at rest, upright, at the origin,
+/// The body that carries all of these, and with it these and those between; none where none does.
+pub(super) fn between(tree: Coordinated<'_>, of: &BTreeSet<usize>) -> Option<(usize, BTreeSet<usize>)> {
+    let parent = |body: usize| tree.joints.iter().find(|joint| joint.child == body).and_then(|joint| joint.parent);
+    let path = |&body: &usize| std::iter::successors(Some(body), |&body| parent(body)).collect::<Vec<usize>>();
+    let paths: Vec<Vec<usize>> = of.iter().map(path).collect();
+    let base = *paths.first()?.iter().find(|body| paths.iter().all(|path| path.contains(body)))?;
+    let below = |path: Vec<usize>| path.into_iter().take_while(move |&body| body != base);
+    Some((base, paths.into_iter().flat_map(below).chain([base]).collect()))
+}
+
+/// The motion of these bodies by that of the one that carries them: that one at rest, upright, at the origin,
 /// and in any pose and motion. None where none does.
 fn images(pool: &mut Pool, tree: Coordinated<'_>, of: &BTreeSet<usize>) -> Option<[Images; 2]> {
+    let (base, of) = between(tree, of)?;
     if !(2..=MOST).contains(&of.len()) {
         return None;
     }
-    let joint_of = |body: usize| tree.joints.iter().position(|joint| joint.child == body);
-    let is_carried = |body: usize| {
-        joint_of(body).is_some_and(|joint| tree.joints[joint].parent.is_some_and(|parent| of.contains(&parent)))
-    };
-    let mut bases = of.iter().copied().filter(|&body| !is_carried(body));
-    let (Some(base), None) = (bases.next(), bases.next()) else { return None };
     let rotation = Probe::new(pool, 6 * tree.bodies.len()).rotation;
     let (unit, zero) = (Value::identity(pool), pool.zero());
     let body = &tree.bodies[base];

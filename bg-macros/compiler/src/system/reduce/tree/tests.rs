@@ -348,6 +348,66 @@ fn what_else_is_held_has_the_rates_of_the_bodies() {
     }
 }
 
+/// Forces and moments of joints of all kinds are those of the literal graph, with what acts along and about them; they
+/// take nothing of a rate.
+#[test]
+fn reactions_are_those_of_the_bodies() {
+    let all = [
+        &["revolute y", "prismatic x"][..],
+        &["revolute x", "<prismatic z", "<revolute y"],
+        &["universal x y", "<cylindrical x"],
+        &["spherical", "<universal z x"],
+    ];
+    let loads = "spring s (ground.O -> b1.low) { stiffness 20; length 0.1; damping 0.4; }
+        drive f on b1.low force = [1, 2, 3]; drive twist on b0 torque = [0.3, 0, 0.1];";
+    for kinds in all {
+        let kinds: Vec<String> = kinds.iter().map(|&kind| kind.to_owned()).collect();
+        let forces: String =
+            (0..kinds.len()).map(|k| format!("f{k}: N = j{k}.force; m{k}: N*m = j{k}.moment; ")).collect();
+        let forces = if kinds[0] == "spherical" { forces.replace("m0: N*m = j0.moment; ", "") } else { forces };
+        let slide = kinds.iter().position(|kind| kind.contains("prismatic"));
+        let push = slide.map_or_else(String::new, |k| format!("drive push on j{k} force = 3 - 20 * j{k}.travel;"));
+        let of =
+            |outputs: &str| put(&format!("{} {loads} {push} {}", joined(&kinds, ""), observed(kinds.len(), outputs)));
+        let scene = of(&forces);
+        agrees(&scene);
+        assert_eq!(operations(&scene), operations(&of("")), "{kinds:?}");
+    }
+}
+
+/// In a scene that is reduced the reactions that outputs name are there; the others are not asked for.
+#[test]
+fn reactions_that_are_read_leave_joint_coordinates() {
+    let text = format!("{} {}", chain(&["y", "z"], ""), observed(2, "f: N = j1.force;"));
+    let scene = scene(&text, "tune {}");
+    assert_eq!(scene.left().len(), 4, "{}", scene.report);
+    assert_eq!(operations(&scene), 95);
+    agrees(&scene);
+}
+
+/// Start velocities that joints determine are looked for as speeds of the joints, and where they do not the bodies keep
+/// their states.
+#[test]
+fn guessed_velocities_start_as_those_of_the_bodies() {
+    let of = |spin: &str, guess: &str| {
+        format!(
+            "gravity [0, 0, -9.81]; ground {{ point O = [0, 0, 0.3]; }}
+             body a {{ mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.1, 0.2]; point low = [0.1, 0, -0.4];
+                 start top at [0, 0, 0.3]; start spin {spin}; start velocity guess; }}
+             joint i: revolute y (ground.O -> a.top) {{ rigid; }}
+             body b {{ mass 1; inertia [0.2, 0.1, 0.15]; point top = [0.1, 0, 0.3]; start top at [0.1, -0.1, -0.3];
+                 start spin {guess}; start velocity guess; }}
+             joint j: revolute x (a.low -> b.top) {{ rigid; }}
+             observe {{ a.position; b.position; a.orientation; b.orientation; w: rad/s = j.speed; }}"
+        )
+    };
+    let fixed = scene(&of("[0, 0.7, 0]", "[0.4, 0.7, 0]"), "tune {}");
+    assert_eq!(fixed.left().len(), 4, "{}", fixed.report);
+    assert!(fixed.reduced.speeds.len() <= 6, "{:?}", fixed.reduced.speeds);
+    let open = scene(&of("[0, 0.7, 0]", "guess"), "tune {}");
+    assert!(open.left().len() > 4, "nothing determines the second speed: {:?}", open.left());
+}
+
 /// What pictures would show of a reaction is not known, and the rest is a number.
 #[test]
 fn pictures_show_what_is_known() {
