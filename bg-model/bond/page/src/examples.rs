@@ -34,6 +34,34 @@ pub struct Offered {
 /// The pendulum of `bond new`.
 const FIRST: &str = include_str!("../../src/first.bond");
 
+/// Mechanisms with loops in space, examples of the program `bond`: names, titles, what to look at, texts.
+const IN_SPACE: [[&str; 4]; 4] = [
+    [
+        "governor",
+        "A Watt governor",
+        "Look at `lift`: as the spindle turns faster the arms swing out and raise the sleeve.",
+        include_str!("../../examples/governor.bond"),
+    ],
+    [
+        "spatial_slider_crank",
+        "A slider-crank in space",
+        "The crank turns about x, the slider goes along x; the rod is on a ball and a universal joint.",
+        include_str!("../../examples/spatial_slider_crank.bond"),
+    ],
+    [
+        "double_wishbone",
+        "A double wishbone",
+        "Look at `steered`: the wheel turns a little as it goes up and down.",
+        include_str!("../../examples/double_wishbone.bond"),
+    ],
+    [
+        "stewart_platform",
+        "A Stewart platform",
+        "Six legs and a plate: thirteen bodies in five loops. Move the sliders `rise` and `spin`.",
+        include_str!("../../examples/stewart_platform.bond"),
+    ],
+];
+
 /// All examples; the first is the one that the page opens with.
 ///
 /// # Errors
@@ -62,7 +90,14 @@ pub fn all() -> Result<Vec<Offered>, String> {
         Ok(of_example(example, text))
     });
     let offered: Vec<Offered> = offered.collect::<Result<_, String>>()?;
-    Ok([first, hacksaw].into_iter().chain(offered).collect())
+    let in_space = IN_SPACE.map(|[name, title, about, text]| Offered {
+        name: name.to_owned(),
+        title: title.to_owned(),
+        about: about.to_owned(),
+        text: text.to_owned(),
+        ..Offered::default()
+    });
+    Ok([first, hacksaw].into_iter().chain(offered).chain(in_space).collect())
 }
 
 /// An example of the workbench, with the run that its head comment is for; parameters stay at their defaults.

@@ -57,12 +57,13 @@ impl Origin {
         }
     }
 
-    /// Whether motion in the x-y plane leaves it constant: z of a position, an axis out of the plane of an orientation.
+    /// Whether motion in planes across a coordinate axis leaves it constant: that component of a position, and of each
+    /// axis of an orientation.
     #[must_use]
-    pub fn leaves_plane(self) -> bool {
+    pub fn leaves_plane(self, normal: usize) -> bool {
         match self {
-            Self::Position(_, axis) => axis == 2,
-            Self::Orientation(_, row, column) => row == 2 || column == 2,
+            Self::Position(_, axis) => axis == normal,
+            Self::Orientation(_, row, _) => row == normal,
             _ => false,
         }
     }

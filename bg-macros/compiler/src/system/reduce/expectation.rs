@@ -191,11 +191,15 @@ fn integrated(report: &Report) -> Vec<String> {
     fates.map(|(state, _)| state.name.clone()).collect()
 }
 
-/// The pose components out of the x-y plane that are not proved constant.
+/// The pose components out of a coordinate plane that are not proved constant: of that for which they are fewest, of
+/// several the first of x-y, y-z and z-x.
 fn out_of_plane(report: &Report) -> Vec<String> {
     let moves = |fate: &Fate| !matches!(fate, Fate::Constant(_));
-    let fates = report.fates.iter().filter(|(state, fate)| moves(fate) && state.origin.leaves_plane());
-    fates.map(|(state, _)| state.name.clone()).collect()
+    let out_of = |normal: usize| -> Vec<String> {
+        let fates = report.fates.iter().filter(|(state, fate)| moves(fate) && state.origin.leaves_plane(normal));
+        fates.map(|(state, _)| state.name.clone()).collect()
+    };
+    [2, 0, 1].map(out_of).into_iter().min_by_key(Vec::len).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -254,6 +258,44 @@ mod tests {
             ]
         );
         assert!(faults[0].span.start().column < faults[1].span.start().column);
+    }
+
+    /// Two bodies on hinges about these axes, one below the other in y or z, which gravity pulls aside.
+    fn hinges(axes: [&str; 2], gravity: &str, rigid: &str) -> Vec<Variant> {
+        let at = |height: f64| if axes[0] == "z" { format!("[0, {height}, 0]") } else { format!("[0, 0, {height}]") };
+        let (top, low, second) = (at(0.5), at(-0.5), at(-1.0));
+        let text = format!(
+            "graph G {{
+                gravity {gravity}; ground {{ point O = [0, 0, 0]; }}
+                body a {{ mass 1; inertia [0.1, 0.2, 0.3]; point top = {top}; point low = {low}; start top at [0, 0, 0]; }}
+                body b {{ mass 1; inertia [0.1, 0.2, 0.3]; point top = {top}; start top at {second}; }}
+                joint i: revolute {} (ground.O -> a.top) {{ {rigid} }}
+                joint j: revolute {} (a.low -> b.top) {{ {rigid} }}
+                observe {{ b.position; }}
+                scene A {{ tune {{}} expect planar; }}
+            }}",
+            axes[0], axes[1]
+        );
+        let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
+        variants(&source.graphs[0]).expect("scenes")
+    }
+
+    #[test]
+    fn a_plane_may_be_any_of_three() {
+        let fault = |axes, gravity, rigid| {
+            let variant = hinges(axes, gravity, rigid).remove(1);
+            let equations = pipeline::derive(&variant.graph).expect("equations").equations;
+            let wanted = wanted(scene(&variant), &equations).expect("parameters");
+            let report = reduce::for_scene(equations, &wanted, &mut crate::program::rate_operations).1;
+            check(scene(&variant), &report).err().map(|faults| faults[0].message.clone())
+        };
+        for rigid in ["rigid;", "stiffness 1e5; tilt stiffness 1e3;"] {
+            for (axis, gravity) in [("x", "[0, 2, -9]"), ("y", "[3, 0, -9]"), ("z", "[3, 2, 0]")] {
+                assert_eq!(fault([axis, axis], gravity, rigid), None, "{axis} {rigid}");
+            }
+            let message = fault(["y", "x"], "[3, 2, -9]", rigid).expect("it moves in space");
+            assert!(message.contains("is not planar: these are not proved constant: "), "{message}");
+        }
     }
 
     #[test]

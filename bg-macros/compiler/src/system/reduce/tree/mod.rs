@@ -22,9 +22,9 @@ mod relative;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::report::{Fate, Report};
+use super::report::{Fate, Report, show};
 use super::speeds::of_kind;
-use super::{closing, friction, turned};
+use super::{closing, friction, is_constant, turned};
 use crate::expr::{Environment, Id, Node, Pool, Symbol, exchange, partial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Kind, Origin, State, StateEquations};
@@ -96,7 +96,9 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     for joint in &joints {
         for state in joint.given(&bodies) {
             kept[state] = false;
-            report.say(state, Fate::Joined(joint.name.clone()));
+            let image = images.get(&Symbol::state(state)).copied().filter(|&id| is_constant(&equations.pool, id));
+            let constant = image.map(|id| Fate::Constant(show(equations, id)));
+            report.say(state, constant.unwrap_or_else(|| Fate::Joined(joint.name.clone())));
         }
     }
     for (state, turn, (name, place)) in counted(equations, &joints, &coordinates) {
