@@ -13,7 +13,7 @@ const TEXT: &str = include_str!("../../bond/examples/stewart_platform.bond");
 
 /// Where a leg stands, and where it holds the plate, in the plate's axes.
 fn ends(leg: usize) -> [[f64; 3]; 2] {
-    let (middle, side) = (FRAC_PI_3 * leg as f64, if leg % 2 == 0 { 1.0 } else { -1.0 });
+    let (middle, side) = (FRAC_PI_3 * leg as f64, if leg.is_multiple_of(2) { 1.0 } else { -1.0 });
     [(0.6, middle - 0.3 * side), (0.35, middle + 0.2 * side)]
         .map(|(radius, angle)| [radius * angle.cos(), radius * angle.sin(), 0.0])
 }
