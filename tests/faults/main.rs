@@ -267,7 +267,7 @@ const SCENES: [(&str, &str); 12] = [
     ("BG0603", "param a: N = 1; Se f = a; 1 j: translation; I m = 2; f -> j -> m; scene A { tune { ▸b } }"),
     (
         "BG0604",
-        "body rod { sphere radius 1; density 1; start spin [1, 0, 0]; }\n\
+        "body rod { sphere radius 1; density 1; start spin [1, 1, 0]; }\n\
          scene A { observe { rod.orientation } expect ▸planar; }",
     ),
     ("BG0605", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; scene A { observe { m.p } expect states = ▸2; }"),
