@@ -23,6 +23,19 @@ pub struct Data {
 }
 
 impl Data {
+    /// The first part of them, of the time from the first to the last instant.
+    #[must_use]
+    pub fn until(&self, part: f64) -> Self {
+        let (first, last) = (self.times.first().copied().unwrap_or(0.0), self.times.last().copied().unwrap_or(0.0));
+        let count = self.times.partition_point(|&t| t <= first + part * (last - first));
+        let column = |column: &Measured| Measured { values: column.values[..count].to_vec(), ..column.clone() };
+        Self {
+            times: self.times[..count].to_vec(),
+            columns: self.columns.iter().map(column).collect(),
+            ignored: self.ignored.clone(),
+        }
+    }
+
     /// How many values there are.
     #[must_use]
     pub fn count(&self) -> usize {

@@ -3,11 +3,13 @@
 //! In: a model, measured columns, which parameters may change. Out: their values with confidence intervals and
 //! correlations, what the data do not say, residuals. Method: least squares ([`fit()`]) on exact derivatives
 //! ([`bg_model::sensitivity`]). A residual counts in parts of its column's noise, which is what the column's residuals
-//! come to: the fit is repeated until that settles. A parameter that is positive is fitted by its logarithm.
+//! come to: the fit is repeated until that settles. A parameter that is positive is fitted by its logarithm. Where a fit
+//! leaves no noise, others are made from other starts, on growing parts of the data.
 
 mod data;
 pub mod fit;
 mod noise;
+mod search;
 
 use bg_model::description::ParameterInfo;
 use bg_model::mechanism::Followed;
@@ -21,6 +23,7 @@ use thiserror::Error;
 pub use data::{Data, Measured};
 use fit::{Fitted, Problem, fit};
 pub use noise::{Left, NoNoise};
+pub use search::identify;
 
 /// A parameter that may change.
 #[derive(Clone, Debug, PartialEq)]
@@ -122,6 +125,8 @@ pub struct Identified {
     pub evaluations: usize,
     /// How many of them have helped, so that derivatives were taken there.
     pub derivatives: usize,
+    /// From how many starts fits were made.
+    pub starts: usize,
     /// Whether the fit has converged.
     pub has_converged: bool,
 }
@@ -131,6 +136,11 @@ impl Identified {
     #[must_use]
     pub fn leaves_noise(&self) -> bool {
         self.columns.iter().all(|column| column.left.fault.is_none())
+    }
+
+    /// The squares of what is left of the columns, in parts of their spreads.
+    fn left(&self) -> f64 {
+        self.columns.iter().map(|column| (column.left.size / column.left.spread).powi(2)).sum()
     }
 }
 
@@ -151,13 +161,8 @@ const SAME: f64 = 1e-7;
 /// The part of a parameter in a combination above which it is named.
 const NAMED: f64 = 0.1;
 
-/// Fits the `variables` of `model`, whose other parameters stay, to `data`; `request` says how runs are integrated.
-/// `told` is told of each run the parameters' values and the root of the mean square of residuals in parts of the
-/// noise.
-///
-/// # Errors
-/// [`IdentifyError`].
-pub fn identify(
+/// The fit that the variables' starts lead to.
+fn fitted(
     model: &dyn Followed,
     request: &Request,
     data: &Data,
@@ -185,8 +190,8 @@ pub fn identify(
     let mut misfit = Misfit { runs, data, variables, noise, told, latest: None, derivatives: 0 };
     let (mut start, mut evaluations) = (inner(|of| of.start), 0);
     for round in 0.. {
-        let fitted = fit(&start, [&bounds[0], &bounds[1]], &sizes, EVALUATIONS, &mut misfit);
-        let fitted = fitted.map_err(IdentifyError::Start)?;
+        let found = fit(&start, [&bounds[0], &bounds[1]], &sizes, EVALUATIONS, &mut misfit);
+        let fitted = found.map_err(IdentifyError::Start)?;
         // Of a later fit the start is what the one before has come to.
         evaluations += fitted.evaluations - usize::from(round > 0);
         start.copy_from(&fitted.x);
@@ -409,6 +414,7 @@ fn identified(
         columns,
         evaluations,
         derivatives,
+        starts: 1,
         has_converged: fitted.has_converged,
     }
 }

@@ -102,7 +102,7 @@ pub fn identify(program: &Program, arguments: &IdentifyArguments) -> Result<Exit
     let unfinished = if !found.has_converged {
         Some("the fit did not converge; start nearer with --set, or fit fewer".to_owned())
     } else if !found.leaves_noise() {
-        Some("what the fit leaves is no noise; start elsewhere with --set, or fit what else may differ".to_owned())
+        Some("what the best fit leaves is no noise; fit what else may differ, or start elsewhere with --set".to_owned())
     } else {
         None
     };

@@ -11,8 +11,8 @@ use crate::tables::table;
 /// Correlations above this are pointed out.
 const STRONG: f64 = 0.95;
 /// What to do where what is left is no noise.
-const ADVICE: &str = "so the parameters have no intervals: this minimum or this model is not the right one; start elsewhere \
-                      with --set, or fit what else may differ";
+const ADVICE: &str = "so the parameters have no intervals: this model or this minimum is not the right one; fit what else may \
+                      differ, or start elsewhere with --set";
 
 /// The report.
 #[must_use]
@@ -22,8 +22,9 @@ pub fn text(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> 
         (true, true) => "converged",
         (true, false) => "converged, but what is left is no noise,",
     };
+    let from = if found.starts > 1 { format!(", from {} starts", found.starts) } else { String::new() };
     let mut text = format!(
-        "{} parameters from {} values in {} columns: {end} after {} runs, {} of them with derivatives\n\n{}",
+        "{} parameters from {} values in {} columns: {end} after {} runs, {} of them with derivatives{from}\n\n{}",
         found.estimates.len(),
         data.count(),
         data.columns.len(),
