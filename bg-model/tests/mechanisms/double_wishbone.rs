@@ -120,7 +120,7 @@ fn the_wheel_moves_as_by_hand() {
     let at_start = poses(&[number(0.0)])[2].0.map(Jet::value);
     assert!(square(apart(at_start, WHEEL)) < 1e-6, "{at_start:?}");
     let graphs = graphs(TEXT);
-    let ideal = model(&graphs, "Ideal", &[]);
+    let ideal = model(&graphs, "DoubleWishbone", &[]);
     let start = ideal.start().unwrap();
     for t_end in [0.15, 1.0] {
         let finish = run(&*ideal, &start, t_end);

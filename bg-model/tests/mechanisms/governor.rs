@@ -56,7 +56,7 @@ fn hand() -> Hand {
 #[test]
 fn the_sleeve_moves_as_by_hand() {
     let graphs = graphs(TEXT);
-    let governor = model(&graphs, "Turning", &[]);
+    let governor = model(&graphs, "Governor", &[]);
     let start = governor.start().unwrap();
     let at_start = outputs(&*governor, 0.0, &start, &[]);
     for t_end in [0.3, 2.0] {

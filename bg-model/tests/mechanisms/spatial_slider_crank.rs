@@ -36,7 +36,7 @@ fn hand() -> Hand {
 #[test]
 fn the_slider_moves_as_by_hand() {
     let graphs = graphs(TEXT);
-    let ideal = model(&graphs, "Ideal", &[]);
+    let ideal = model(&graphs, "SpatialSliderCrank", &[]);
     let start = ideal.start().unwrap();
     let at_start = outputs(&*ideal, 0.0, &start, &[]);
     assert!((at_start[2] - 6.0).abs() < 1e-12);

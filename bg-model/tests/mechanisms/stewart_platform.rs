@@ -70,7 +70,7 @@ fn hand() -> Hand {
 #[test]
 fn the_plate_moves_as_by_hand() {
     let graphs = graphs(TEXT);
-    let ideal = model(&graphs, "Ideal", &[]);
+    let ideal = model(&graphs, "StewartPlatform", &[]);
     let start = ideal.start().unwrap();
     let finish = run(&*ideal, &start, 0.5);
     let y = outputs(&*ideal, finish.t, finish.x.as_slice(), &finish.negative);
