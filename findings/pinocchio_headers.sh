@@ -4,7 +4,12 @@
 # Guess: its wheels bring the C++ headers of Pinocchio, so that a C++ program that reads a URDF can be compiled with what pip has installed.
 # Seen: the headers are there, but not those that they include: neither Eigen/Core (the package cmeel-eigen has it, and is no
 # dependency) nor urdf_model/model.h (no package of these has it: urdfdom's are installed without urdfdom_headers).
-# For us: `bg-model/import/tests/speed` installs cmeel-eigen, and writes robots down in Python for a C++ program without the URDF header.
+# Output:
+#   21:#include <urdf_model/model.h>
+#   python/lib/python3.11/site-packages/cmeel.prefix/include/pinocchio/multibody/fwd.hpp:10:#include <Eigen/Core>
+#   urdf_model/model.h: not installed
+#   Eigen/Core: not installed
+# Fails where one of the two is found.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

@@ -1,4 +1,4 @@
-//! A double wishbone, the example `double_wishbone.bond`, beside equations by hand in the angle of the lower arm.
+//! A double wishbone, the example `double_wishbone.bond`, beside hand-written equations in the angle of the lower arm.
 
 use bg_model::dynamics::Machine;
 
@@ -128,9 +128,9 @@ fn the_wheel_moves_as_by_hand() {
         let by_hand = run(&hand(), &[0.0, 0.0], t_end).x;
         let (wheel, turn) = poses(&[number(by_hand[0])])[2];
         for k in 0..3 {
-            assert!((y[k] - wheel[k].value()).abs() < 1e-8, "{} m, by hand {} m", y[k], wheel[k].value());
+            assert!((y[k] - wheel[k].value()).abs() < 1e-8, "{} m, hand-written {} m", y[k], wheel[k].value());
         }
         let steered = (-turn[0][1].value()).atan2(turn[1][1].value());
-        assert!((y[3] - steered).abs() < 1e-8, "{} rad, by hand {steered} rad", y[3]);
+        assert!((y[3] - steered).abs() < 1e-8, "{} rad, hand-written {steered} rad", y[3]);
     }
 }

@@ -1,4 +1,4 @@
-//! A Watt governor, the example `governor.bond`, beside equations by hand in two coordinates.
+//! A Watt governor, the example `governor.bond`, beside hand-written equations in two coordinates.
 
 use bg_model::dynamics::Machine;
 use bg_model::simulation::Finish;
@@ -64,8 +64,8 @@ fn the_sleeve_moves_as_by_hand() {
         let y = outputs(&*governor, t, x.as_slice(), &negative);
         let by_hand = run(&hand(), &[0.0, 0.6, 12.0, 0.0], t_end).x;
         let lift = height(&[Jet::from(by_hand[0]), Jet::from(by_hand[1])]).value();
-        assert!((y[0] - lift).abs() < 1e-9, "{} m, by hand {lift} m", y[0]);
-        assert!((y[1] - by_hand[2]).abs() < 1e-8, "{} rad/s, by hand {} rad/s", y[1], by_hand[2]);
+        assert!((y[0] - lift).abs() < 1e-9, "{} m, hand-written {lift} m", y[0]);
+        assert!((y[1] - by_hand[2]).abs() < 1e-8, "{} rad/s, hand-written {} rad/s", y[1], by_hand[2]);
         assert!((y[0] - at_start[0]).abs() > 1e-3, "it moves");
     }
 }

@@ -1,4 +1,4 @@
-//! Equations of motion of mechanisms by hand, without anything of the compiler: Kane's equations for poses that are
+//! Hand-written equations of motion of mechanisms, without anything of the compiler: Kane's equations for poses that are
 //! functions of independent coordinates.
 //!
 //! In: masses, tensors, poses by coordinates. Out: a system whose states are the coordinates and their rates. Method: the

@@ -1,4 +1,4 @@
-//! A slider-crank in space, the example `spatial_slider_crank.bond`, beside equations by hand in the crank's angle.
+//! A slider-crank in space, the example `spatial_slider_crank.bond`, beside hand-written equations in the crank's angle.
 
 use bg_model::dynamics::Machine;
 
@@ -45,7 +45,7 @@ fn the_slider_moves_as_by_hand() {
         let y = outputs(&*ideal, finish.t, finish.x.as_slice(), &finish.negative);
         let by_hand = run(&hand(), &[0.0, 6.0], t_end).x;
         let x = poses(&[Jet::from(by_hand[0])])[1].0[0].value();
-        assert!((y[0] - x).abs() < 1e-9, "{} m, by hand {x} m", y[0]);
-        assert!((y[2] - by_hand[1]).abs() < 1e-7, "{} rad/s, by hand {} rad/s", y[2], by_hand[1]);
+        assert!((y[0] - x).abs() < 1e-9, "{} m, hand-written {x} m", y[0]);
+        assert!((y[2] - by_hand[1]).abs() < 1e-7, "{} rad/s, hand-written {} rad/s", y[2], by_hand[1]);
     }
 }

@@ -1,4 +1,4 @@
-//! A Stewart platform, the example `stewart_platform.bond`, beside equations by hand in place and angles of its plate.
+//! A Stewart platform, the example `stewart_platform.bond`, beside hand-written equations in place and angles of its plate.
 
 use std::f64::consts::FRAC_PI_3;
 
@@ -85,6 +85,6 @@ fn the_plate_moves_as_by_hand() {
         0.5 * (rate(i, j) - rate(j, i))
     });
     for (found, expected) in y.iter().zip(at.map(Jet::value).iter().chain(&spin)) {
-        assert!((found - expected).abs() < 1e-8, "{found}, by hand {expected}");
+        assert!((found - expected).abs() < 1e-8, "{found}, hand-written {expected}");
     }
 }

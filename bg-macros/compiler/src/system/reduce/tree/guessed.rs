@@ -27,6 +27,8 @@ pub(super) enum Sought {
 
 /// What the start looks for.
 pub(super) struct Guessed {
+    /// The states with the first guesses.
+    pub start: Vec<f64>,
     speeds: BTreeSet<Symbol>,
     /// Of each body.
     sought: Vec<Sought>,
@@ -37,9 +39,10 @@ impl Guessed {
     pub fn of(equations: &StateEquations, bodies: &[Body], parameters: &[f64]) -> Self {
         let speeds: BTreeSet<Symbol> =
             equations.speeds.iter().map(|&place| Symbol::numbered(Symbol::Unknown, place)).collect();
-        let trial = Trial::new(equations, parameters);
+        let mut trial = Trial::new(equations, parameters);
         let sought = bodies.iter().map(|body| trial.sought(body, &speeds)).collect();
-        Self { is_determined: speeds.is_empty() || trial.is_determined(), speeds, sought }
+        let is_determined = speeds.is_empty() || trial.is_determined();
+        Self { start: trial.states.swap_remove(0), speeds, sought, is_determined }
     }
 
     /// Whether this depends on a velocity that is looked for.
@@ -77,7 +80,7 @@ pub(super) fn sought(equations: &mut StateEquations, speed: Id) -> Id {
 }
 
 /// The values of the states at the start, with these of the parameters and the first guesses, `more` one with 1 more of it.
-pub(super) fn starts(equations: &StateEquations, parameters: &[f64], more: Option<usize>) -> Vec<f64> {
+fn starts(equations: &StateEquations, parameters: &[f64], more: Option<usize>) -> Vec<f64> {
     let given = Environment { parameters, ..Environment::default() };
     let mut unknowns = evaluate(&equations.pool, &equations.guesses, &given);
     more.into_iter().for_each(|unknown| unknowns[unknown] += 1.0);

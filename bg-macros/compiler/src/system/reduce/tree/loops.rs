@@ -45,9 +45,7 @@ fn constant(
         (numbers::norm(&force) > 0.0).then_some((row, force))
     };
     let held: [(usize, Vector); 3] = rows.iter().filter_map(direction).collect::<Vec<_>>().try_into().ok()?;
-    let product = |i: usize, j: usize| numbers::dot(&held[i].1, &held[j].1);
-    let wanted = |i: usize, j: usize| f64::from(u8::from(i == j));
-    (0..3).all(|i| (0..3).all(|j| numbers::are_near(&[product(i, j)], &[wanted(i, j)]))).then_some(held)
+    numbers::are_perpendicular(&held.map(|(_, direction)| direction)).then_some(held)
 }
 
 /// Puts rows along the axes of a body in place of those along other ones.

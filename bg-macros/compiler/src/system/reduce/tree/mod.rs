@@ -213,8 +213,7 @@ fn joints(
     bodies: &[Body],
     (parameters, guessed): (&[f64], &Guessed),
 ) -> Option<Vec<Joint>> {
-    let states = guessed::starts(equations, parameters, None);
-    let starts = Environment { states: &states, parameters, ..Environment::default() };
+    let starts = Environment { states: &guessed.start, parameters, ..Environment::default() };
     let joints = recognition::of(equations, bodies, &starts, guessed);
     (!is_planar(&joints)).then_some(joints)
 }

@@ -39,6 +39,13 @@ pub(super) fn are_near(a: &[f64], b: &[f64]) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() < ROUNDING)
 }
 
+/// Whether directions are perpendicular to each other and of length 1.
+pub(super) fn are_perpendicular(directions: &[Vector]) -> bool {
+    let wanted = |i: usize, j: usize| f64::from(u8::from(i == j));
+    let count = directions.len();
+    (0..count).all(|i| (0..count).all(|j| are_near(&[dot(&directions[i], &directions[j])], &[wanted(i, j)])))
+}
+
 /// How many of these rows are independent.
 pub(super) fn rank(mut rows: Vec<Vec<f64>>) -> usize {
     let largest = |row: &[f64]| row.iter().fold(0.0, |largest: f64, part| largest.max(part.abs()));

@@ -12,7 +12,7 @@ use super::bodies::{Body, symbols};
 use super::joints::{Freedom, Joint, Moves, Probe};
 use super::loads::Tree;
 use super::motion::Motion;
-use super::numbers::{self, Vector};
+use super::numbers;
 use super::recognition::at_places;
 use super::recursion::{Accelerations, Moved, rate_of_angular, square, up};
 use crate::expr::{Id, Pool, Symbol, partial, same_polynomial, substitute};
@@ -63,10 +63,6 @@ impl Wanted {
         self.0.values().flatten().any(|row| row.multiplier == *multiplier)
     }
 
-    fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
     /// Each reaction by coordinates; none where the directions of one are not proved to be as they have to.
     pub fn images(
         &self,
@@ -76,7 +72,7 @@ impl Wanted {
         coordinates: &[Vec<Moves>],
     ) -> Option<BTreeMap<Symbol, Id>> {
         let mut images = BTreeMap::new();
-        if self.is_empty() {
+        if self.0.is_empty() {
             return Some(images);
         }
         let wrenches = wrenches(pool, tree, moved, motion, accelerations);
@@ -215,7 +211,12 @@ fn held(
             is_inertial,
         });
     }
-    groups.iter().all(|directions| are_perpendicular(pool, &probe, directions)).then_some(all)
+    let are_perpendicular = |directions: &Vec<[Id; 3]>| {
+        let places = at_places(pool, &probe, directions)?;
+        places.iter().all(|rows| numbers::are_perpendicular(rows)).then_some(())
+    };
+    groups.iter().try_for_each(are_perpendicular)?;
+    Some(all)
 }
 
 /// The joint's place on one end, from the child's centre.
@@ -232,18 +233,6 @@ fn arm(pool: &mut Pool, bodies: &[Body], joint: &Joint, end: usize) -> Value {
         }
         None => joint.at[0].add(pool, &back),
     }
-}
-
-/// Whether directions are perpendicular to each other and of length 1 at all angles.
-fn are_perpendicular(pool: &Pool, probe: &Probe, directions: &[[Id; 3]]) -> bool {
-    let are = |rows: &Vec<Vector>| {
-        rows.iter().enumerate().all(|(i, a)| {
-            let products: Vec<f64> = rows.iter().map(|b| numbers::dot(a, b)).collect();
-            let wanted: Vec<f64> = (0..rows.len()).map(|j| f64::from(u8::from(i == j))).collect();
-            numbers::are_near(&products, &wanted)
-        })
-    };
-    at_places(pool, probe, directions).is_some_and(|places| places.iter().all(are))
 }
 
 fn is_zero(pool: &mut Pool, of: &Value) -> bool {
