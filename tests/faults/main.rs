@@ -83,7 +83,7 @@ const MECHANISM: [(&str, &str); 14] = [
     ("BG0214", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness ▸1e4; restitution 0.5; }"),
 ];
 
-const GRAPH: [(&str, &str); 37] = [
+const GRAPH: [(&str, &str); 38] = [
     ("BG0301", "param mass: ▸kgs = 1;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0302", "param m: kg = 1;\nSe f = 1; 1 j: translation; I ▸m = 2; f -> j -> m;"),
     ("BG0303", "param mass: kg = 1;\nSe f = 1; 1 j: translation; I m = ▸mas; f -> j -> m;"),
@@ -119,6 +119,7 @@ const GRAPH: [(&str, &str); 37] = [
     ("BG0331", "MSe f = ▸integral(m.power); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0336", "MSe f = ▸unwrapped(m.p, m.p, 0); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0337", "Se f = 1; 1 j: translation; I m = ▸j; f -> j -> m;"),
+    ("BG0338", "param m: kg = 1; Se f = 3 N/▸m; 1 j: translation; I a = m; f -> j -> a;"),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
 ];
@@ -192,14 +193,14 @@ const MORE: [(&str, &str); 43] = [
     ("BG0102", "let stiffness ▸N = 2;\n1 slide: translation; I m = 2; slide -> m;"),
     ("BG0102", "body rod { mass 1; inertia [1, 1, 1]; point end = [0, 1, 0]; start end at 0▸, 1, 0; }"),
     ("BG0102", "body rod { mass 1; inertia [1, 1, 1]; start at (0▸, 1, 0); }"),
-    ("BG0102", "1 j: translation; I m = 2; R r = 3 ▸kg; j -> m; j -> r;"),
+    ("BG0102", "1 j: translation; I m = 2; R r = 3 ▸seconds; j -> m; j -> r;"),
     (
         "BG0207",
         "ground { point O = [0, 0, 0]; } ▸ground { point P = [1, 0, 0]; }\n\
          body rod { mass 1; inertia [1, 1, 1]; } joint a: spherical (ground.O -> rod) { rigid; }\n\
          joint b: spherical (ground.P -> rod) { rigid; }",
     ),
-    ("BG0301", "param a: ▸deg = 90; Se f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
+    ("BG0301", "param a: ▸furlong = 90; Se f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0303", "body rod { mass 1; inertia [1, 1, 1]; start turned rotation_z(▸pi / 2); }"),
     (
         "BG0316",

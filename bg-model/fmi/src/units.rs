@@ -1,52 +1,20 @@
 //! Units as FMI has them: powers of the SI base units.
 //!
-//! In: a unit as a model's description writes it. Out: its exponents. Only coherent SI units exist there, so none has a
-//! factor. Source: the SI Brochure, 9th edition, tables 2 and 4; of FMI 3.0 section 2.4.3, which counts rad among the
-//! bases.
+//! In: a unit as a model's description writes it. Out: its exponents and its size. Source: of FMI 3.0 section 2.4.3,
+//! which counts rad among the bases.
+
+use bg_units::Unit;
 
 /// The symbols of the bases, in the order of the exponents: the names of the attributes of `BaseUnit`.
 pub(crate) const BASES: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
 
-/// Symbols of derived units and their exponents.
-const DERIVED: [(&str, [i32; 8]); 17] = [
-    ("Hz", [0, 0, -1, 0, 0, 0, 0, 0]),
-    ("N", [1, 1, -2, 0, 0, 0, 0, 0]),
-    ("Pa", [1, -1, -2, 0, 0, 0, 0, 0]),
-    ("J", [1, 2, -2, 0, 0, 0, 0, 0]),
-    ("W", [1, 2, -3, 0, 0, 0, 0, 0]),
-    ("C", [0, 0, 1, 1, 0, 0, 0, 0]),
-    ("V", [1, 2, -3, -1, 0, 0, 0, 0]),
-    ("F", [-1, -2, 4, 2, 0, 0, 0, 0]),
-    ("Ohm", [1, 2, -3, -2, 0, 0, 0, 0]),
-    ("S", [-1, -2, 3, 2, 0, 0, 0, 0]),
-    ("Wb", [1, 2, -2, -1, 0, 0, 0, 0]),
-    ("T", [1, 0, -2, -1, 0, 0, 0, 0]),
-    ("H", [1, 2, -2, -2, 0, 0, 0, 0]),
-    ("sr", [0; 8]),
-    ("lm", [0, 0, 0, 0, 0, 0, 1, 0]),
-    ("kat", [0, 0, -1, 0, 0, 1, 0, 0]),
-    ("1", [0; 8]),
-];
-
-/// The exponents of a unit; none where they are not whole numbers or a symbol is not known.
-pub(crate) fn exponents(unit: &str) -> Option<[i32; 8]> {
-    let mut sum = [0; 8];
-    for (index, part) in unit.split('/').enumerate() {
-        let sign = if index == 0 { 1 } else { -1 };
-        for factor in part.split('*') {
-            let (symbol, power) = factor.trim().split_once('^').unwrap_or((factor.trim(), "1"));
-            let power: i32 = power.trim().parse().ok()?;
-            let of_symbol = of_symbol(symbol.trim())?;
-            sum = std::array::from_fn(|base| sum[base] + sign * power * of_symbol[base]);
-        }
-    }
-    Some(sum)
-}
-
-fn of_symbol(symbol: &str) -> Option<[i32; 8]> {
-    let base = BASES.iter().position(|&known| known == symbol);
-    let base = base.map(|base| std::array::from_fn(|index| i32::from(index == base)));
-    base.or_else(|| DERIVED.iter().find(|(known, _)| *known == symbol).map(|(_, exponents)| *exponents))
+/// What a unit is in the bases: its exponents, and its size; none where they are not whole numbers or a symbol is not
+/// known.
+pub(crate) fn in_bases(unit: &str) -> Option<([i32; 8], f64)> {
+    let unit: Unit = unit.parse().ok()?;
+    let powers = unit.dimension.bases()?;
+    let exponents = std::array::from_fn(|base| powers.get(base).map_or(unit.angle, |&power| power.into()));
+    Some((exponents, unit.size()))
 }
 
 /// The unit of a derivative with respect to time.
@@ -65,13 +33,19 @@ pub(crate) fn per_second(unit: &str) -> String {
 mod tests {
     use super::*;
 
+    fn exponents(unit: &str) -> Option<[i32; 8]> {
+        in_bases(unit).map(|(exponents, _)| exponents)
+    }
+
     #[test]
     fn powers_products_and_quotients_are_counted() {
         assert_eq!(exponents("N*s/m"), Some([1, 0, -1, 0, 0, 0, 0, 0]));
         assert_eq!(exponents("kg*m^2/s"), Some([1, 2, -1, 0, 0, 0, 0, 0]));
         assert_eq!(exponents("rad/s^2"), Some([0, 0, -2, 0, 0, 0, 0, 1]));
         assert_eq!(exponents("1"), Some([0; 8]));
-        assert_eq!((exponents("m^(1/2)"), exponents("inch")), (None, None));
+        assert_eq!((exponents("m^(1/2)"), exponents("furlong")), (None, None));
+        assert_eq!(in_bases("kN"), Some(([1, 1, -2, 0, 0, 0, 0, 0], 1e3)));
+        assert_eq!(in_bases("rpm"), Some(([0, 0, -1, 0, 0, 0, 0, 1], std::f64::consts::PI / 30.0)));
     }
 
     #[test]

@@ -180,7 +180,8 @@ fn check(
         let graph: &BondGraph = graph;
         let types = Types::new(graph, efforts);
         for definition in &graph.lets {
-            let (shape, found) = types.of(&definition.value, None, faults);
+            let (shape, found) =
+                types.declared(&definition.value, definition.unit.as_deref().unwrap_or_default(), faults);
             if let Some(clause) = &definition.clause
                 && shape != Shape::of_components(clause.components)
             {
@@ -297,7 +298,8 @@ impl LawCheck<'_, '_> {
                 let faults = self.faults.len();
                 self.expect("the law", term, (found_shape, found), allowed, &[stiffness, compliance]);
                 // `2 * k` is of the unit of k where that makes sense.
-                let found = if found == Quantity::Any { self.types.with_pure_numbers(term).1 } else { found };
+                let found =
+                    if found == Quantity::Any { self.types.with_pure_numbers(term, &mut Vec::new()).1 } else { found };
                 if found != stiffness && found != compliance && self.faults.len() == faults {
                     let name = self.node.name.text.clone();
                     self.faults.push(Fault::new(term.span, &GraphFault::NumberForC { name }));

@@ -46,6 +46,7 @@ pub enum GraphFault {
     VariableRole { name: String, symbol: &'static str },
     EmptyGraph { name: String },
     Decay,
+    UnitOrName { unit: String, symbol: String },
 }
 
 use GraphFault as F;
@@ -91,6 +92,7 @@ impl Explain for GraphFault {
             F::Reserved { .. } => "BG0334",
             F::Decay => "BG0335",
             F::NotAValue { .. } => "BG0337",
+            F::UnitOrName { .. } => "BG0338",
         }
     }
 
@@ -152,6 +154,9 @@ impl Explain for GraphFault {
             F::UnwrappedElsewhere => "`unwrapped` has a meaning only in a `let` and in an observed output".to_owned(),
             F::VariableRole { name, symbol } => format!("the law of {symbol} `{name}` cannot be of that variable"),
             F::EmptyGraph { name } => format!("graph `{name}` has no bond"),
+            F::UnitOrName { unit, symbol } => {
+                format!("`{symbol}` in `{unit}` is a unit, and there is something of this name")
+            }
             F::Decay => "the rate of `baumgarte` must be a number above 0, in 1/s".to_owned(),
         }
     }
@@ -197,6 +202,9 @@ impl Explain for GraphFault {
             },
             F::VectorLength { .. } => "write `[x, y, z]`, with 0 for a component that is not there".to_owned(),
             F::NoComponent { .. } => "take components of vectors only".to_owned(),
+            F::UnitOrName { symbol, .. } => {
+                format!("write `({symbol})` if you mean that, or rename it if you mean the unit")
+            }
             F::Units { .. } => "change one of the two so that they agree".to_owned(),
             F::Domains { from, to, left, right } => {
                 let (effort, flow) = (left.effort_dimension(), Dimension::WATT.per(right.effort_dimension()));

@@ -5,6 +5,7 @@
 use proc_macro2::Span;
 
 use super::NodeId;
+use super::units::Dimension;
 use crate::source::ast::{BinaryOperator, Comparison};
 
 /// An expression with its place in the source.
@@ -21,6 +22,8 @@ pub struct Term {
 pub enum TermKind {
     /// A number; its unit is what its place asks for.
     Number(f64),
+    /// A number in coherent SI, with its dimension.
+    Quantity(f64, Dimension),
     /// A quantity of the graph.
     Reference(Reference),
     /// One component (0, 1, 2) of a vector.
@@ -173,7 +176,11 @@ impl Term {
     pub fn visit<'t>(&'t self, each: &mut dyn FnMut(&'t Term)) {
         each(self);
         match &self.kind {
-            TermKind::Number(_) | TermKind::Reference(_) | TermKind::Guess(_) | TermKind::Integral(_) => {}
+            TermKind::Number(_)
+            | TermKind::Quantity(..)
+            | TermKind::Reference(_)
+            | TermKind::Guess(_)
+            | TermKind::Integral(_) => {}
             TermKind::Component(inner, _) | TermKind::Negate(inner) => inner.visit(each),
             TermKind::Chain(first, rest) => {
                 first.visit(each);
@@ -203,7 +210,11 @@ impl Term {
     fn degree(&self) -> Option<u8> {
         match &self.kind {
             TermKind::Reference(Reference::Variable) => Some(1),
-            TermKind::Number(_) | TermKind::Reference(_) | TermKind::Guess(_) | TermKind::Integral(_) => Some(0),
+            TermKind::Number(_)
+            | TermKind::Quantity(..)
+            | TermKind::Reference(_)
+            | TermKind::Guess(_)
+            | TermKind::Integral(_) => Some(0),
             TermKind::Component(inner, _) | TermKind::Negate(inner) => inner.degree(),
             TermKind::Chain(first, rest) => rest.iter().try_fold(first.degree()?, |degree, operation| {
                 let right = operation.operand.degree()?;

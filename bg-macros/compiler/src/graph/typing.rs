@@ -10,6 +10,8 @@ use proc_macro2::Span;
 use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::{BondGraph, GraphFault, NodeId, NodeKind};
 use crate::fault::{Explain, Fault};
+use bg_units::Unit;
+
 use crate::graph::units::Dimension;
 use crate::source::ast::{BinaryOperator, TrackKind};
 
@@ -104,9 +106,18 @@ impl<'a> Types<'a> {
     }
 
     /// Shape and unit where every bare number is a pure number.
-    pub fn with_pure_numbers(&self, term: &Term) -> Typed {
-        Checker { types: self, variable: None, number: Quantity::Known(Dimension::NONE), faults: &mut Vec::new() }
-            .check(term)
+    pub fn with_pure_numbers(&self, term: &Term, faults: &mut Vec<Fault>) -> Typed {
+        Checker { types: self, variable: None, number: Quantity::Known(Dimension::NONE), faults }.check(term)
+    }
+
+    /// Shape and unit of what is declared in a unit. Where that is not coherent, bare numbers are pure numbers: nobody
+    /// could say whether they are in SI or in that unit.
+    pub fn declared(&self, term: &Term, unit: &str, faults: &mut Vec<Fault>) -> Typed {
+        if unit.parse::<Unit>().is_ok_and(|unit| !unit.is_coherent()) {
+            self.with_pure_numbers(term, faults)
+        } else {
+            self.of(term, None, faults)
+        }
     }
 
     /// Shape and unit without reporting faults.
@@ -185,6 +196,7 @@ impl Checker<'_, '_> {
     fn check(&mut self, term: &Term) -> Typed {
         match &term.kind {
             TermKind::Number(_) => (Shape::Scalar, self.number),
+            TermKind::Quantity(_, dimension) => (Shape::Scalar, Quantity::Known(*dimension)),
             TermKind::Reference(Reference::Let(index)) => self.types.of_let(*index),
             TermKind::Reference(reference) => self.types.of_reference(*reference, self.variable),
             TermKind::Negate(inner) => self.check(inner),

@@ -215,6 +215,22 @@ pub struct Unit {
     pub span: Span,
 }
 
+impl Unit {
+    /// The unit that this stands for; none where a symbol is not known.
+    #[must_use]
+    pub fn meaning(&self) -> Option<bg_units::Unit> {
+        self.factors.iter().try_fold(bg_units::Unit::ONE, |product, (symbol, exponent)| {
+            bg_units::Unit::of_symbol(&symbol.text).map(|unit| product.times(unit.power(*exponent)))
+        })
+    }
+
+    /// Whether a number in it is one in SI; also where nothing is known of it.
+    #[must_use]
+    pub fn is_coherent(&self) -> bool {
+        self.meaning().is_none_or(bg_units::Unit::is_coherent)
+    }
+}
+
 /// Which law a junction obeys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JunctionKind {
@@ -860,6 +876,8 @@ pub struct Expression {
 pub enum ExpressionKind {
     /// A number; in a unit check it takes the unit that its place asks for.
     Number(f64),
+    /// `75 mm`
+    Quantity(f64, Unit),
     /// A name, possibly dotted, possibly with a component (`.x`) at the end.
     Name(Name),
     /// `-a`
@@ -902,14 +920,30 @@ pub struct Operation {
 }
 
 impl Expression {
-    /// The value, where it is made of numbers only.
+    /// The same, where numbers only are in this unit: SI or a quantity. A coherent unit changes nothing, nor does any unit change 0.
+    #[must_use]
+    pub fn in_unit(self, unit: &Unit) -> Self {
+        match self.number() {
+            Some(number) if number != 0.0 && !unit.is_coherent() => {
+                Self { kind: ExpressionKind::Quantity(number, unit.clone()), span: self.span }
+            }
+            _ => self,
+        }
+    }
+
+    /// The value, where it is made of numbers without units only.
     #[must_use]
     pub fn number(&self) -> Option<f64> {
+        self.folded(&Self::number)
+    }
+
+    /// The value of an expression of numbers whose operands have the values `of`.
+    pub(crate) fn folded(&self, of: &dyn Fn(&Self) -> Option<f64>) -> Option<f64> {
         match &self.kind {
             ExpressionKind::Number(value) => Some(*value),
-            ExpressionKind::Negate(inner) => Some(-inner.number()?),
-            ExpressionKind::Chain(first, rest) => rest.iter().try_fold(first.number()?, |value, operation| {
-                let right = operation.operand.number()?;
+            ExpressionKind::Negate(inner) => Some(-of(inner)?),
+            ExpressionKind::Chain(first, rest) => rest.iter().try_fold(of(first)?, |value, operation| {
+                let right = of(&operation.operand)?;
                 Some(match operation.operator {
                     BinaryOperator::Add => value + right,
                     BinaryOperator::Subtract => value - right,

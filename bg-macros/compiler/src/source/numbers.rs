@@ -1,6 +1,8 @@
-//! What users write for numbers that the language writes otherwise: constants, and units that are not coherent.
+//! What users write for numbers that the language writes otherwise: constants, and words for units.
 //!
 //! In: a word. Out: what to write in its place.
+
+use crate::fault::near_miss;
 
 /// A name for a number that the language does not have.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -16,41 +18,29 @@ pub struct Constant {
 const CONSTANTS: [Constant; 4] = [
     Constant { name: "pi", number: "3.141592653589793", remark: "" },
     Constant { name: "tau", number: "6.283185307179586", remark: "" },
-    Constant {
-        name: "deg",
-        number: "0.017453292519943295",
-        remark: ": angles are in rad, 90 deg are 1.5707963267948966",
-    },
-    Constant { name: "rpm", number: "0.10471975511965977", remark: ": speeds are in rad/s" },
+    Constant { name: "deg", number: "1 deg", remark: ": a unit stands after its number, as in `90 deg`" },
+    Constant { name: "rpm", number: "1 rpm", remark: ": a unit stands after its number, as in `1450 rpm`" },
 ];
 
-/// Units that are not coherent, what to write in their place, and their size in that.
-const OTHER_UNITS: [(&str, &str, &str); 20] = [
-    ("deg", "rad", "0.017453292519943295"),
-    ("rpm", "rad/s", "0.10471975511965977"),
-    ("mm", "m", "1e-3"),
-    ("cm", "m", "1e-2"),
-    ("km", "m", "1e3"),
-    ("g", "kg", "1e-3"),
-    ("t", "kg", "1e3"),
-    ("ms", "s", "1e-3"),
-    ("min", "s", "60"),
-    ("h", "s", "3600"),
-    ("kN", "N", "1e3"),
-    ("bar", "Pa", "1e5"),
-    ("kPa", "Pa", "1e3"),
-    ("MPa", "Pa", "1e6"),
-    ("GPa", "Pa", "1e9"),
-    ("kJ", "J", "1e3"),
-    ("kW", "W", "1e3"),
-    ("mA", "A", "1e-3"),
-    ("mH", "H", "1e-3"),
-    ("uF", "F", "1e-6"),
+/// Words for units, and their symbols.
+const WORDS_OF_UNITS: [(&str, &str); 16] = [
+    ("degree", "deg"),
+    ("degrees", "deg"),
+    ("radian", "rad"),
+    ("radians", "rad"),
+    ("millimetre", "mm"),
+    ("millimeter", "mm"),
+    ("metre", "m"),
+    ("meter", "m"),
+    ("sec", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("hour", "h"),
+    ("minute", "min"),
+    ("Nm", "N*m"),
+    ("RPM", "rpm"),
+    ("kph", "km/h"),
 ];
-
-/// Units that are coherent and begin what users write after a number.
-const COHERENT: [&str; 18] =
-    ["m", "s", "kg", "A", "K", "rad", "N", "J", "W", "V", "F", "H", "C", "Pa", "Hz", "Ohm", "Wb", "T"];
 
 /// The constant of this name.
 pub fn constant(name: &str) -> Option<&'static Constant> {
@@ -64,17 +54,8 @@ impl Constant {
     }
 }
 
-/// What to write for a unit that is not coherent.
-pub fn coherent(unit: &str) -> Option<String> {
-    let (_, coherent, factor) = OTHER_UNITS.iter().find(|(other, ..)| *other == unit)?;
-    Some(format!("write `{coherent}`: 1 {unit} is {factor} {coherent}"))
-}
-
-/// What to write where a unit stands after a number.
-pub fn without_unit(number: &str, unit: &str) -> Option<String> {
-    if COHERENT.contains(&unit) {
-        return Some(format!("write `{number}`: numbers are in SI units"));
-    }
-    let (_, coherent, factor) = OTHER_UNITS.iter().find(|(other, ..)| *other == unit)?;
-    Some(format!("write `{number} * {factor}`: numbers are in SI units, here {coherent}"))
+/// The symbol of the unit that a word stands for, or nearly.
+pub fn symbol_for(word: &str) -> Option<&'static str> {
+    let named = WORDS_OF_UNITS.iter().find(|(known, _)| *known == word).map(|(_, symbol)| *symbol);
+    named.or_else(|| near_miss(word, bg_units::symbols().filter(|symbol| symbol.len() > 1)))
 }

@@ -552,10 +552,14 @@ impl Display for Expression {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match &self.kind {
             ExpressionKind::Number(value) => f.write_str(&number(*value)),
+            ExpressionKind::Quantity(value, unit) => write!(f, "{} {unit}", number(*value)),
             ExpressionKind::Name(name) => name.fmt(f),
             ExpressionKind::Negate(operand) => {
                 // The sign of a number is part of the number, so that the minus in front of one needs parentheses.
-                let is_number = matches!(operand.kind, ExpressionKind::Number(value) if value.is_sign_positive());
+                let is_number = matches!(
+                    operand.kind,
+                    ExpressionKind::Number(value) | ExpressionKind::Quantity(value, _) if value.is_sign_positive()
+                );
                 f.write_str("-")?;
                 enclosed(f, operand, is_number || binding(operand) < MINUS)
             }
@@ -603,7 +607,8 @@ fn enclosed(f: &mut Formatter<'_>, operand: &Expression, parentheses: bool) -> R
 /// How strongly an expression holds together; an `if` stands in parentheses as an operand, for the eye.
 fn binding(expression: &Expression) -> u8 {
     match &expression.kind {
-        ExpressionKind::If(_) => 0,
+        // What stands after a unit could be read as a part of it.
+        ExpressionKind::If(_) | ExpressionKind::Quantity(..) => 0,
         ExpressionKind::Chain(_, rest) => rest.first().map_or(MINUS, |operation| strength(operation.operator)),
         _ => MINUS,
     }

@@ -107,7 +107,7 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
 /// Hands every name in an expression to `each`, as the expression that it is.
 pub(crate) fn each_name(expression: &mut Expression, each: &mut dyn FnMut(&mut Expression)) {
     match &mut expression.kind {
-        ExpressionKind::Number(_) => {}
+        ExpressionKind::Number(_) | ExpressionKind::Quantity(..) => {}
         ExpressionKind::Name(_) => each(expression),
         ExpressionKind::Negate(inner) => each_name(inner, each),
         ExpressionKind::Chain(first, rest) => {

@@ -15,7 +15,7 @@ use bg_model::run::Request;
 use quick_xml::Writer;
 
 use crate::exported::Described;
-use crate::units::{BASES, exponents};
+use crate::units::{BASES, in_bases};
 use crate::variables::{Counts, Kind, names, unit};
 
 pub use terminals::terminals_and_icons;
@@ -148,17 +148,19 @@ fn experiment(xml: &mut Xml, packing: &Packing) -> io::Result<()> {
     empty(xml, "DefaultExperiment", &experiment)
 }
 
-/// Every unit that a variable has, with its exponents.
+/// Every unit that a variable has, with its exponents and its size.
 fn units(xml: &mut Xml, description: &'static Description) -> io::Result<()> {
     let all = Counts::of(description).all().filter_map(|kind| unit(description, kind));
-    let units: BTreeMap<String, Option<[i32; 8]>> = all.map(|unit| (unit.clone(), exponents(&unit))).collect();
+    let units: BTreeMap<String, _> = all.map(|unit| (unit.clone(), in_bases(&unit))).collect();
     nested(xml, "UnitDefinitions", &[], |xml| {
-        units.iter().try_for_each(|(name, exponents)| {
+        units.iter().try_for_each(|(name, meaning)| {
             nested(xml, "Unit", &[("name", name.clone())], |xml| {
-                let Some(exponents) = exponents else { return Ok(()) };
+                let Some((exponents, size)) = meaning else { return Ok(()) };
                 let powers = BASES.into_iter().zip(exponents).filter(|(_, power)| **power != 0);
-                let powers: Attributes<'_> = powers.map(|(base, power)| (base, power.to_string())).collect();
-                empty(xml, "BaseUnit", &powers)
+                let factor = (*size != 1.0).then(|| ("factor", format!("{size:?}")));
+                let powers = powers.map(|(base, power)| (base, power.to_string()));
+                let attributes: Attributes<'_> = powers.chain(factor).collect();
+                empty(xml, "BaseUnit", &attributes)
             })
         })
     })

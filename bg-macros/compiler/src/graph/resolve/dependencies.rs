@@ -4,6 +4,7 @@
 
 use std::collections::BTreeSet;
 
+use bg_units::Unit;
 use proc_macro2::Span;
 
 use super::Resolver;
@@ -19,7 +20,10 @@ impl Resolver {
     /// The unit of a value as its definition writes it: J and N*m are one dimension but read differently.
     fn written_unit(&self, value: &Term) -> Option<String> {
         match value.kind {
-            TermKind::Reference(Reference::Let(index)) => self.graph.lets[index].unit.clone(),
+            TermKind::Reference(Reference::Let(index)) => self.graph.lets[index].unit.clone().filter(|unit| {
+                let unit: Result<Unit, _> = unit.parse();
+                unit.is_ok_and(Unit::is_coherent)
+            }),
             TermKind::Reference(Reference::Energy(_) | Reference::StoredEnergy) => Some("J".to_owned()),
             TermKind::Reference(Reference::Flow(node)) => self.bond_of(node).map(Bond::flow_unit),
             TermKind::Reference(Reference::Displacement(node)) => self.bond_of(node).map(Bond::displacement_unit),
@@ -200,7 +204,7 @@ impl Resolver {
         let mut faults = Vec::new();
         let mut observed = Vec::new();
         for (observation, declared) in self.graph.observations.iter().zip(&self.observed) {
-            let (shape, quantity) = types.of(&observation.value, None, &mut faults);
+            let (shape, quantity) = types.declared(&observation.value, &observation.unit, &mut faults);
             let unit = match (declared, quantity) {
                 (Some(declared), Quantity::Known(found)) if *declared != found => {
                     let what = format!("`{}` is declared in the first and has the second", observation.name);

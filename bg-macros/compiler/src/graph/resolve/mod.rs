@@ -4,11 +4,14 @@
 
 mod connect;
 mod dependencies;
+mod quantity;
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use bg_units::Unit;
 use proc_macro2::Span;
 
+use self::quantity::scaled;
 use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::typing::Shape;
 use super::{
@@ -17,9 +20,9 @@ use super::{
 };
 use crate::fault::{DeclaredTwice, Explain, Fault, Staged, near_miss};
 use crate::graph::units::{self, Dimension, Domain};
-use crate::source::ast::{self, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role, Watch};
-use crate::source::numbers::{Constant, constant};
-use crate::source::walk::each_name;
+use crate::source::ast::{
+    self, BinaryOperator, ElementKind, Expression, ExpressionKind, Item, JunctionKind, Name, Role, Watch,
+};
 
 /// What a name stands for.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -88,6 +91,10 @@ struct Resolver {
     /// The 1-junctions.
     ones: BTreeSet<NodeId>,
     domains: Vec<(NodeId, Domain)>,
+    /// In what the numbers of the parameters are.
+    parameters: Vec<Unit>,
+    /// In what those of the inputs are.
+    inputs: Vec<Unit>,
     observed: Vec<Option<Dimension>>,
     /// Where each output is.
     outputs: BTreeMap<String, Span>,
@@ -126,6 +133,8 @@ impl Resolver {
             junctions: BTreeMap::new(),
             ones: BTreeSet::new(),
             domains: Vec::new(),
+            parameters: Vec::new(),
+            inputs: Vec::new(),
             observed: Vec::new(),
             outputs: BTreeMap::new(),
             faults: Vec::new(),
@@ -152,10 +161,10 @@ impl Resolver {
         self.names.insert(name.text.clone(), entity);
     }
 
-    fn unit(&mut self, unit: &ast::Unit) -> Dimension {
-        units::dimension(unit).unwrap_or_else(|fault| {
+    fn unit(&mut self, unit: &ast::Unit) -> Unit {
+        units::unit(unit).unwrap_or_else(|fault| {
             self.faults.push(fault);
-            Dimension::NONE
+            Unit::ONE
         })
     }
 
@@ -166,10 +175,11 @@ impl Resolver {
             match item {
                 Item::Parameter(parameter) => self.parameter(parameter),
                 Item::Input(input) => {
-                    let dimension = self.unit(&input.unit);
+                    let measured = self.unit(&input.unit);
                     self.name(&input.name, Entity::Input(self.graph.inputs.len()));
                     let (name, docs, unit) = (input.name.clone(), input.docs.clone(), input.unit.to_string());
-                    self.graph.inputs.push(Input { name, docs, unit, dimension });
+                    self.graph.inputs.push(Input { name, docs, unit, dimension: measured.dimension });
+                    self.inputs.push(measured);
                 }
                 Item::Let(definition) => {
                     self.name(&definition.name, Entity::Let(lets));
@@ -193,12 +203,13 @@ impl Resolver {
     }
 
     fn parameter(&mut self, parameter: &ast::Parameter) {
-        let dimension = self.unit(&parameter.unit);
+        let measured = self.unit(&parameter.unit);
         self.name(&parameter.name, Entity::Parameter(self.graph.parameters.len()));
         let name = &parameter.name;
-        let default = self.number(&parameter.default);
-        let lower = parameter.lower.as_ref().map(|bound| (self.number(&bound.value), bound.included));
-        let upper = parameter.upper.as_ref().map(|bound| (self.number(&bound.value), bound.included));
+        let mut number = |value: &Expression| self.number(value, &parameter.unit, measured);
+        let default = number(&parameter.default);
+        let [lower, upper] = [&parameter.lower, &parameter.upper]
+            .map(|bound| bound.as_ref().map(|bound| (number(&bound.value), bound.included)));
         let is_empty = match (lower, upper) {
             (Some((low, with_low)), Some((high, with_high))) => low > high || low == high && !(with_low && with_high),
             _ => false,
@@ -212,19 +223,9 @@ impl Resolver {
             self.fault(parameter.default.span, &GraphFault::DefaultOutOfRange { name: name.text.clone() });
         }
         let (docs, unit) = (parameter.docs.clone(), parameter.unit.to_string());
+        let dimension = measured.dimension;
         self.graph.parameters.push(Parameter { name: name.clone(), docs, unit, dimension, default, lower, upper });
-    }
-
-    /// The value of an expression of numbers.
-    fn number(&mut self, expression: &Expression) -> f64 {
-        if let Some(value) = expression.number()
-            && value.is_finite()
-        {
-            return value;
-        }
-        let what = "a default or an end of a range".to_owned();
-        self.fault(expression.span, &GraphFault::NotANumber { what, constant: constant_in(expression) });
-        0.0
+        self.parameters.push(measured);
     }
 
     /// The rate of Baumgarte's terms, 1/s.
@@ -265,7 +266,7 @@ impl Resolver {
                     let first_turn = self.graph.turns.len();
                     let value = self.term(&definition.value, Place::Let);
                     self.name_turns(first_turn, &definition.name.text, &value);
-                    let dimension = definition.unit.as_ref().map(|unit| self.unit(unit));
+                    let dimension = definition.unit.as_ref().map(|unit| self.unit(unit).dimension);
                     let unit = definition.unit.as_ref().map(ToString::to_string);
                     let (name, clause) = (definition.name.clone(), definition.clause.clone());
                     self.graph.lets.push(Let { name, value, dimension, unit, clause });
@@ -402,6 +403,8 @@ impl Resolver {
         }
         self.name_turns(first_turn, &name, &value);
         let declared = observation.unit.as_ref().map(|unit| self.unit(unit));
+        let value = declared.map_or(value.clone(), |unit| scaled(value, BinaryOperator::Divide, unit));
+        let declared = declared.map(|unit| unit.dimension);
         let unit = observation.unit.as_ref().map(ToString::to_string).unwrap_or_default();
         let span = observation.name.as_ref().map_or(observation.value.span, |name| name.span);
         match self.outputs.get(&name) {
@@ -424,6 +427,7 @@ impl Resolver {
         let span = expression.span;
         let kind = match &expression.kind {
             ExpressionKind::Number(value) => TermKind::Number(*value),
+            ExpressionKind::Quantity(value, unit) => self.quantity_in(*value, unit, place),
             ExpressionKind::Name(name) => return self.named(&name.text, span, place),
             ExpressionKind::Negate(inner) => TermKind::Negate(Box::new(self.term(inner, place))),
             ExpressionKind::Chain(first, rest) => {
@@ -506,7 +510,12 @@ impl Resolver {
     /// A name: a quantity, a property of one (`pin.flow`), or a component of either (`pin.flow.x`).
     fn named(&mut self, name: &str, span: Span, place: Place<'_>) -> Term {
         if let Some(reference) = self.quantity(name, place) {
-            return Term { kind: TermKind::Reference(reference), span };
+            let term = Term { kind: TermKind::Reference(reference), span };
+            return match reference {
+                Reference::Parameter(index) => scaled(term, BinaryOperator::Multiply, self.parameters[index]),
+                Reference::Input(index) => scaled(term, BinaryOperator::Multiply, self.inputs[index]),
+                _ => term,
+            };
         }
         if let Some((whole, last)) = name.rsplit_once('.')
             && let Some(component) = ["x", "y", "z"].iter().position(|letter| *letter == last)
@@ -570,17 +579,6 @@ impl Resolver {
             _ => None,
         }
     }
-}
-
-/// The first name of a mathematical constant in an expression.
-fn constant_in(expression: &Expression) -> Option<&'static Constant> {
-    let mut found = None;
-    each_name(&mut expression.clone(), &mut |value| {
-        if let ExpressionKind::Name(name) = &value.kind {
-            found = found.or_else(|| constant(&name.text));
-        }
-    });
-    found
 }
 
 /// Whether an element is an R whose effort follows from its flow.

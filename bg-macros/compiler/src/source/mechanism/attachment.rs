@@ -226,7 +226,7 @@ pub(super) fn stiff(clause: Clause) -> Clause {
 /// All names in an expression.
 fn names(expression: &Expression) -> Vec<String> {
     match &expression.kind {
-        ExpressionKind::Number(_) => Vec::new(),
+        ExpressionKind::Number(_) | ExpressionKind::Quantity(..) => Vec::new(),
         ExpressionKind::Name(name) => vec![name.text.clone()],
         ExpressionKind::Negate(inner) => names(inner),
         ExpressionKind::Chain(first, rest) => {

@@ -60,7 +60,7 @@ fn input_given(item: &Item, what: &str, value: &Expression) -> Let {
     let (Item::Input(input), clause) = (item, Clause::argument(format!("the input {what}"), Given::Free)) else {
         unreachable!("what is open is a parameter or an input")
     };
-    let_of(&input.name, &input.unit, value, clause)
+    let_of(&input.name, &input.unit, &value.clone().in_unit(&input.unit), clause)
 }
 
 fn let_of(name: &Name, unit: &Unit, value: &Expression, clause: Clause) -> Let {
@@ -69,6 +69,7 @@ fn let_of(name: &Name, unit: &Unit, value: &Expression, clause: Clause) -> Let {
 
 /// The `let` of a parameter, and one for each end of its range that is not decided here and is not 0.
 fn parameter_given(parameter: &Parameter, what: &str, value: &Expression, faults: &mut Faults) -> Vec<Let> {
+    let value = &value.clone().in_unit(&parameter.unit);
     let of = |what: String| Clause::argument(what, Given::Constant);
     let is_number = value.number().is_some();
     if let Some(number) = value.number() {

@@ -14,7 +14,7 @@ use super::{
 };
 use crate::fault::{Fault, Faults};
 use crate::source::ast::{Name, Words};
-use crate::source::numbers::without_unit;
+use crate::source::numbers::symbol_for;
 
 /// The proof that a fault has been noted.
 #[derive(Debug)]
@@ -392,12 +392,12 @@ impl Cursor<'_> {
         (is_value && self.is(",")).then_some(SyntaxFault::BareVector)
     }
 
-    /// The fault of a unit after a number.
+    /// The fault of a word after a number that is nearly a unit.
     pub fn unit_of_number(&self) -> Option<SyntaxFault> {
         let last = self.at.checked_sub(1).and_then(|last| self.tokens.get(last))?;
         let (number, word) = (last.kind.number()?, self.word()?.to_owned());
-        let help = without_unit(&number, &word)?;
-        Some(SyntaxFault::UnitOfNumber { number, word, help })
+        let unit = symbol_for(&word)?;
+        Some(SyntaxFault::UnitOfNumber { number, word, unit })
     }
 
     /// Whether a statement of this block begins here.

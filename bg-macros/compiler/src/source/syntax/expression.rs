@@ -139,7 +139,11 @@ impl Cursor<'_> {
         if self.is(".") {
             return Err(self.unexpected("an operator"));
         }
-        self.above(0, ExpressionKind::Number(sign * value), span)
+        let kind = match self.unit_after_number()? {
+            Some(unit) => ExpressionKind::Quantity(sign * value, unit),
+            None => ExpressionKind::Number(sign * value),
+        };
+        self.above(0, kind, span)
     }
 
     /// `frame.R.x` or `pow(a, b)`

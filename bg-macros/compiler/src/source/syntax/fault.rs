@@ -29,14 +29,14 @@ pub enum SyntaxFault {
     },
     /// The components of a vector without its brackets.
     BareVector,
-    /// A word after a number, as if numbers had units.
+    /// A word after a number that is no unit, but nearly.
     UnitOfNumber {
         /// The number.
         number: String,
         /// The word.
         word: String,
-        /// What to write.
-        help: String,
+        /// The unit that may be meant.
+        unit: &'static str,
     },
     /// A start of the displacement of a junction.
     StartOfDisplacement {
@@ -194,7 +194,7 @@ impl Explain for SyntaxFault {
                 format!("`{name}` has no start: it counts from t = 0, where it is 0")
             }
             Self::UnitOfNumber { number, word, .. } => {
-                format!("found `{word}` after `{number}`, expected a number alone")
+                format!("found `{word}` after `{number}`, which is not a unit")
             }
             Self::MissingSemicolon { last } => format!("the statement that ends with {last} has no `;`"),
             Self::Power { operator, .. } => format!("found `{operator}`, which is no operator of an expression"),
@@ -241,7 +241,7 @@ impl Explain for SyntaxFault {
             Self::StartOfDisplacement { name } => {
                 format!("leave this out, and write `{name} + E` with the start E where you use it")
             }
-            Self::UnitOfNumber { help, .. } => help.clone(),
+            Self::UnitOfNumber { number, unit, .. } => format!("write `{number} {unit}`"),
             Self::MissingSemicolon { last } => format!("write `;` after {last}"),
             Self::Power { base, exponent, .. } => format!("write `pow({base}, {exponent})`"),
             Self::NotAUnit { .. } => "write unit symbols joined by `*` and `/`, with whole powers, or `1`".into(),
@@ -325,6 +325,9 @@ fn written_plainly(text: &str) -> String {
     if other_base || end == digits.len() {
         "write a decimal number such as `0.05` or `2e-3`".into()
     } else {
-        format!("write `{}`", digits[..end].trim_end_matches(['e', 'E', '_']))
+        let number = digits[..end].trim_end_matches(['e', 'E', '_']);
+        let suffix = digits[number.len()..].trim_start_matches('_');
+        let unit = if bg_units::Unit::of_symbol(suffix).is_some() { format!(" {suffix}") } else { String::new() };
+        format!("write `{number}{unit}`")
     }
 }

@@ -170,7 +170,7 @@ fn quantity(cursor: &mut Cursor, parameter: &mut Parameter) -> Parsed<()> {
         let fault = SyntaxFault::MissingDefault { name: parameter.name.text.clone() };
         return Err(cursor.note(parameter.unit.span, &fault));
     }
-    parameter.default = cursor.expression()?;
+    parameter.default = cursor.expression()?.in_unit(&parameter.unit);
     while cursor.eat(",").is_some() {
         bound(cursor, parameter)?;
     }
@@ -191,7 +191,7 @@ fn bound(cursor: &mut Cursor, parameter: &mut Parameter) -> Parsed<()> {
     for _ in 0..=usize::from(included) {
         cursor.advance();
     }
-    let bound = Bound { value: cursor.expression()?, included };
+    let bound = Bound { value: cursor.expression()?.in_unit(&parameter.unit), included };
     let (slot, end) = if is_lower { (&mut parameter.lower, "lower") } else { (&mut parameter.upper, "upper") };
     if slot.is_some() {
         cursor.note(span, &SyntaxFault::Duplicate { clause: format!("{end} bound") });
@@ -239,6 +239,7 @@ fn binding(cursor: &mut Cursor) -> Parsed<Let> {
     }
     cursor.expect("=")?;
     let value = cursor.expression()?;
+    let value = unit.iter().fold(value, Expression::in_unit);
     cursor.end_statement(OPERATOR);
     Ok(Let { name, unit, value, clause: None })
 }

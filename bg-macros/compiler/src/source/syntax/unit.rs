@@ -1,6 +1,6 @@
 //! Units: `kg*m^2/s`, `1/s`, `1`.
 //!
-//! In: the tokens after a `:`. Out: a [`Unit`]; whether its symbols are known is for a later stage.
+//! In: the tokens after a `:`, or after a number. Out: a [`Unit`]; after a `:` whether its symbols are known is for a later stage.
 
 use super::{
     SyntaxFault,
@@ -10,6 +10,27 @@ use super::{
 use crate::source::ast::{Name, Unit};
 
 impl Cursor<'_> {
+    /// The unit after a number, if one is there: known symbols, and no statement of which one is the first word.
+    pub fn unit_after_number(&mut self) -> Parsed<Option<Unit>> {
+        let begins_element = self.starts_statement() && self.word_ahead(1).is_some();
+        if begins_element || !self.is_symbol_of_unit(0) {
+            return Ok(None);
+        }
+        let start = self.span();
+        let mut factors = vec![self.unit_factor(1)?];
+        while let Some(sign) = self.unit_separator().filter(|_| self.is_symbol_of_unit(1)) {
+            self.advance();
+            factors.push(self.unit_factor(sign)?);
+        }
+        Ok(Some(Unit { factors, span: joined(start, self.last_span()) }))
+    }
+
+    /// Whether the token `ahead` is the symbol of a unit, and no function or group of names.
+    fn is_symbol_of_unit(&self, ahead: usize) -> bool {
+        let is_known = self.word_ahead(ahead).is_some_and(|word| bg_units::Unit::of_symbol(word).is_some());
+        is_known && !self.symbol_ahead(ahead + 1, ".") && !matches!(self.ahead(ahead + 1), Some(TokenKind::Group(_)))
+    }
+
     /// A unit; each `/` is for the one factor after it.
     pub fn unit(&mut self) -> Parsed<Unit> {
         let start = self.span();

@@ -83,9 +83,10 @@ impl Signals<'_> {
 
     fn nature(&mut self, term: &Term) -> Nature {
         match &term.kind {
-            TermKind::Number(_) | TermKind::Guess(_) | TermKind::Reference(Reference::Parameter(_)) => {
-                Nature::default()
-            }
+            TermKind::Number(_)
+            | TermKind::Quantity(..)
+            | TermKind::Guess(_)
+            | TermKind::Reference(Reference::Parameter(_)) => Nature::default(),
             TermKind::Reference(Reference::Let(index)) => self.nature_of_let(*index),
             TermKind::Reference(_) | TermKind::Integral(_) => Nature { changes: true, is_partial: false },
             TermKind::Component(inner, _) | TermKind::Negate(inner) => self.nature(inner),

@@ -14,7 +14,7 @@ impl Signals<'_> {
     /// The value of a term; `variable` is that of the law it stands in.
     pub(super) fn evaluate(&mut self, term: &Term, variable: Option<&Value>) -> Value {
         match &term.kind {
-            TermKind::Number(value) => Value::scalar(self.pool.number(*value)),
+            TermKind::Number(value) | TermKind::Quantity(value, _) => Value::scalar(self.pool.number(*value)),
             TermKind::Reference(reference) => self.reference(*reference, variable),
             TermKind::Component(inner, index) => {
                 let inner = self.evaluate(inner, variable);

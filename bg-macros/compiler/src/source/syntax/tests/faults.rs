@@ -54,11 +54,13 @@ fn unknown_words_have_a_near_miss_or_a_list() {
 }
 
 #[test]
-fn a_unit_after_a_number_is_told_in_arguments_vectors_and_parentheses() {
-    let help = "found `deg` after `90`, expected a number alone | write `90 * 0.017453292519943295`: numbers are in SI units, here rad";
-    for (text, column) in
-        [("let R = rotation_z(90 deg);", 23), ("let v = [1, 90 deg, 2];", 16), ("let a = 2 * (90 deg);", 17)]
-    {
+fn what_is_nearly_a_unit_is_told_in_arguments_vectors_and_parentheses() {
+    let help = "found `degrees` after `90`, which is not a unit | write `90 deg`";
+    for (text, column) in [
+        ("let R = rotation_z(90 degrees);", 23),
+        ("let v = [1, 90 degrees, 2];", 16),
+        ("let a = 2 * (90 degrees);", 17),
+    ] {
         assert_eq!(in_graph(text).trim_end(), format!("2:{column} BG0102 {help}"), "{text}");
     }
 }

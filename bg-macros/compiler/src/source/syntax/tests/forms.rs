@@ -321,3 +321,20 @@ fn what_could_be_read_has_all_names_that_the_stub_needs() {
          graph B {\n    param e: 1 = 2;\n}\n"
     );
 }
+
+#[test]
+fn a_unit_after_a_number_reaches_as_far_as_symbols_do() {
+    for (text, printed) in [
+        ("75 mm", "75 mm"),
+        ("-3 kN/mm * x", "(-3 kN/mm) * x"),
+        ("2 m^2/s / t", "(2 m^2/s) / t"),
+        ("1450 rpm + w", "(1450 rpm) + w"),
+        ("5 N*m/rad", "5 N*m/rad"),
+        ("3 N * (m)", "(3 N) * m"),
+        ("2 * m", "2 * m"),
+        ("[1 mm, 2 C, 3]", "[1 mm, 2 C, 3]"),
+    ] {
+        assert_eq!(expression(text).to_string(), printed);
+        assert_eq!(expression(printed).to_string(), printed);
+    }
+}
