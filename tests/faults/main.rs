@@ -83,7 +83,7 @@ const MECHANISM: [(&str, &str); 14] = [
     ("BG0214", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness ▸1e4; restitution 0.5; }"),
 ];
 
-const GRAPH: [(&str, &str); 38] = [
+const GRAPH: [(&str, &str); 40] = [
     ("BG0301", "param mass: ▸kgs = 1;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0302", "param m: kg = 1;\nSe f = 1; 1 j: translation; I ▸m = 2; f -> j -> m;"),
     ("BG0303", "param mass: kg = 1;\nSe f = 1; 1 j: translation; I m = ▸mas; f -> j -> m;"),
@@ -120,6 +120,15 @@ const GRAPH: [(&str, &str); 38] = [
     ("BG0336", "MSe f = ▸unwrapped(m.p, m.p, 0); 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0337", "Se f = 1; 1 j: translation; I m = ▸j; f -> j -> m;"),
     ("BG0338", "param m: kg = 1; Se f = 3 N/▸m; 1 j: translation; I a = m; f -> j -> a;"),
+    (
+        "BG0339",
+        "table c: m -> N = [[0, 1], [▸0, 2], [1, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
+    ),
+    (
+        "BG0339",
+        "table c: m -> N = [[0, 1], ▸[1, 2, 3], [2, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
+    ),
+    ("BG0340", "table c: m -> N = [[0, 1], [1, 2]]; 1 j: translation; I m = 2; C k(q) = ▸c * q; j -> m; j -> k;"),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
 ];
@@ -188,7 +197,9 @@ const VALUES: [(&str, &str); 4] = [
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 43] = [
+const MORE: [(&str, &str); 45] = [
+    ("BG0339", "table ▸c: m -> N = [[0, 1]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;"),
+    ("BG0339", "table c: m -> N = [[0, 1], ▸[1, 2, 3], [2, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;"),
     ("BG0102", "1 slide ▸translation; I m = 2; slide -> m;"),
     ("BG0102", "let stiffness ▸N = 2;\n1 slide: translation; I m = 2; slide -> m;"),
     ("BG0102", "body rod { mass 1; inertia [1, 1, 1]; point end = [0, 1, 0]; start end at 0▸, 1, 0; }"),

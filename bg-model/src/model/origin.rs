@@ -7,7 +7,7 @@ use crate::model::scalar::Scalar;
 /// An input or an element whose value is not finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Origin {
-    /// `input`, or the element's kind.
+    /// `input`, `table`, or the element's kind.
     pub kind: &'static str,
     /// Its name.
     pub name: &'static str,
@@ -29,6 +29,7 @@ impl Origin {
             "algebraic loop" => {
                 "Newton's iteration finds no solution of these laws there: they may have none, or not be smooth at it"
             }
+            "table" => "its argument is beyond its points: add points, or write `held` or `continued` after them",
             "closed loop" => {
                 "the mechanism comes to a pose there in which a dependent body may turn either way: leave it out of `dependent`"
             }

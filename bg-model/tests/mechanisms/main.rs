@@ -17,4 +17,5 @@ mod space;
 mod spatial_slider_crank;
 mod start;
 mod stewart_platform;
+mod tables;
 mod text;

@@ -47,6 +47,10 @@ pub enum GraphFault {
     EmptyGraph { name: String },
     Decay,
     UnitOrName { unit: String, symbol: String },
+    TablePoint { name: String },
+    TableOrder { name: String },
+    TableSize { name: String, found: usize, most: usize },
+    TableWithoutArgument { name: String },
 }
 
 use GraphFault as F;
@@ -93,6 +97,8 @@ impl Explain for GraphFault {
             F::Decay => "BG0335",
             F::NotAValue { .. } => "BG0337",
             F::UnitOrName { .. } => "BG0338",
+            F::TablePoint { .. } | F::TableOrder { .. } | F::TableSize { .. } => "BG0339",
+            F::TableWithoutArgument { .. } => "BG0340",
         }
     }
 
@@ -154,6 +160,14 @@ impl Explain for GraphFault {
             F::UnwrappedElsewhere => "`unwrapped` has a meaning only in a `let` and in an observed output".to_owned(),
             F::VariableRole { name, symbol } => format!("the law of {symbol} `{name}` cannot be of that variable"),
             F::EmptyGraph { name } => format!("graph `{name}` has no bond"),
+            F::TablePoint { name } => format!("a point of the table `{name}` is no pair of numbers"),
+            F::TableOrder { name } => {
+                format!("the arguments of the table `{name}` do not ascend: this one is not above the one before")
+            }
+            F::TableSize { name, found, most } => {
+                format!("the table `{name}` has {found} points; a table has at least 2 and at most {most}")
+            }
+            F::TableWithoutArgument { name } => format!("`{name}` is a table, whose value needs an argument"),
             F::UnitOrName { unit, symbol } => {
                 format!("`{symbol}` in `{unit}` is a unit, and there is something of this name")
             }
@@ -202,6 +216,13 @@ impl Explain for GraphFault {
             },
             F::VectorLength { .. } => "write `[x, y, z]`, with 0 for a component that is not there".to_owned(),
             F::NoComponent { .. } => "take components of vectors only".to_owned(),
+            F::TablePoint { .. } => "write each point as `[argument, value]`".to_owned(),
+            F::TableOrder { .. } => "put the points in the order of their arguments, each argument once".to_owned(),
+            F::TableSize { found, most, .. } if found > most => {
+                "leave points out where the curve is nearly straight".to_owned()
+            }
+            F::TableSize { .. } => "write at least two points, `[[0, 1], [2, 3]]`".to_owned(),
+            F::TableWithoutArgument { name } => format!("write `{name}(..)` with the argument in the parentheses"),
             F::UnitOrName { symbol, .. } => {
                 format!("write `({symbol})` if you mean that, or rename it if you mean the unit")
             }

@@ -7,6 +7,7 @@ pub mod causality;
 mod domains;
 mod fault;
 mod resolve;
+mod table;
 mod term;
 mod typing;
 pub mod units;
@@ -20,6 +21,7 @@ pub use crate::source::drawing::{self, Drawing};
 pub use causality::{CausalGraph, End};
 pub use fault::{GraphFault, OF_BONDS};
 pub use resolve::resolve;
+pub use table::{Cubic, Piece, Table};
 pub use term::{Builtin, Operation, Reference, Term, TermKind};
 pub use typing::Shape;
 
@@ -38,6 +40,8 @@ pub struct BondGraph {
     pub inputs: Vec<Input>,
     /// Names for expressions; a let refers to others in any order without cycles.
     pub lets: Vec<Let>,
+    /// Functions given by points, in the order of declaration.
+    pub tables: Vec<Table>,
     /// Junctions and elements in the order of declaration.
     pub nodes: Vec<Node>,
     /// Bonds in the order of the chains.

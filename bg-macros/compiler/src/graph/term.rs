@@ -34,6 +34,8 @@ pub enum TermKind {
     Chain(Box<Term>, Vec<Operation>),
     /// A function.
     Call(Builtin, Vec<Term>),
+    /// The value of a table at its argument.
+    Lookup(usize, Box<Term>),
     /// A vector, or a matrix by its rows.
     Vector(Vec<Term>),
     /// `if left < right { then } else { otherwise }`, with `left < right` as written.
@@ -181,7 +183,7 @@ impl Term {
             | TermKind::Reference(_)
             | TermKind::Guess(_)
             | TermKind::Integral(_) => {}
-            TermKind::Component(inner, _) | TermKind::Negate(inner) => inner.visit(each),
+            TermKind::Component(inner, _) | TermKind::Negate(inner) | TermKind::Lookup(_, inner) => inner.visit(each),
             TermKind::Chain(first, rest) => {
                 first.visit(each);
                 rest.iter().for_each(|operation| operation.operand.visit(each));
@@ -224,6 +226,7 @@ impl Term {
                     BinaryOperator::Divide => (right == 0).then_some(degree),
                 }
             }),
+            TermKind::Lookup(_, argument) => Some(0).filter(|_| argument.degree() == Some(0)),
             TermKind::Call(builtin, arguments) => degree_of_call(*builtin, arguments),
             TermKind::Vector(parts) => {
                 let is_zero = |part: &&Term| matches!(part.kind, TermKind::Number(0.0));

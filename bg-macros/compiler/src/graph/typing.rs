@@ -200,6 +200,7 @@ impl Checker<'_, '_> {
             TermKind::Reference(Reference::Let(index)) => self.types.of_let(*index),
             TermKind::Reference(reference) => self.types.of_reference(*reference, self.variable),
             TermKind::Negate(inner) => self.check(inner),
+            TermKind::Lookup(table, argument) => self.lookup(*table, argument),
             TermKind::Component(inner, _) => {
                 let (shape, quantity) = self.check(inner);
                 if shape != Shape::Vector {
@@ -225,6 +226,24 @@ impl Checker<'_, '_> {
                 (Shape::Scalar, times(quantity, Quantity::Known(Dimension::SECOND)))
             }
         }
+    }
+
+    /// The value of a table, whose argument has the declared unit.
+    fn lookup(&mut self, table: usize, argument: &Term) -> Typed {
+        let table = &self.types.graph.tables[table];
+        let (shape, quantity) = self.check(argument);
+        let what = || format!("the argument of the table `{}`", table.name);
+        if shape != Shape::Scalar {
+            let fault = GraphFault::ShapeOf { what: what(), expected: Shape::Scalar, found: shape };
+            self.fault(argument.span, &fault);
+        }
+        if let Quantity::Known(found) = quantity
+            && found != table.argument
+        {
+            let what = format!("{} has the first and is declared in the second", what());
+            self.fault(argument.span, &GraphFault::Units { what, left: found, right: table.argument });
+        }
+        (Shape::Scalar, Quantity::Known(table.value))
     }
 
     /// Two terms that must have the same shape and unit.

@@ -92,6 +92,8 @@ pub enum Item {
     Input(Input),
     /// `let NAME: UNIT = EXPRESSION;` a name for an expression (UNIT may be left out).
     Let(Let),
+    /// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`
+    Table(Table),
     /// `1 NAME;`, `0 NAME[3]: translation;`
     Junction(Junction),
     /// `R NAME(w) = LAW;` and its like.
@@ -204,6 +206,47 @@ pub struct Let {
     pub value: Expression,
     /// The clause of a mechanism word that it stands for, if any.
     pub clause: Option<Clause>,
+}
+
+/// A function of one variable that is given by points.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Its name, by which expressions call it.
+    pub name: Name,
+    /// The unit of its argument.
+    pub argument: Unit,
+    /// The unit of its value.
+    pub value: Unit,
+    /// The points: pairs of numbers, the arguments ascending.
+    pub points: Expression,
+    /// What it is between its points.
+    pub between: Between,
+    /// What it is beyond them.
+    pub beyond: Beyond,
+}
+
+/// What a table is between its points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Between {
+    /// Straight lines.
+    #[default]
+    Straight,
+    /// Cubics with a continuous slope that rise and fall only where the points do.
+    Monotone,
+    /// A cubic spline: its second derivative is continuous.
+    Spline,
+}
+
+/// What a table is beyond its first and last point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Beyond {
+    /// Nothing: a run that gets there ends with an error.
+    #[default]
+    Refused,
+    /// The value at its end.
+    Held,
+    /// A straight line with the slope at its end.
+    Continued,
 }
 
 /// A unit as written, `kg*m^2/s`: factors with their exponents (negative after a `/`). `1` has none.

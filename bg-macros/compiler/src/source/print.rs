@@ -6,12 +6,14 @@
 use std::fmt::{Display, Formatter, Result};
 
 use crate::source::ast::{
-    Axis, AxisLaw, Baumgarte, Body, Bound, Choice, Close, Contact, Direction, Drive, Element, ElementKind, Ends,
-    Expectation, Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input, Item, Joint, JointKind,
-    Junction, JunctionKind, LawVariable, Let, Name, Observation, Operation, Orifice, Parameter, Part, Point, Rigid,
-    Role, Scene, Shape, Solid, Source, Spring, Stop, Track, Tune, Unit, Watch,
+    Axis, AxisLaw, Baumgarte, Between, Beyond, Body, Bound, Choice, Close, Contact, Direction, Drive, Element,
+    ElementKind, Ends, Expectation, Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input, Item,
+    Joint, JointKind, Junction, JunctionKind, LawVariable, Let, Name, Observation, Operation, Orifice, Parameter, Part,
+    Point, Rigid, Role, Scene, Shape, Solid, Source, Spring, Stop, Table, Track, Tune, Unit, Watch,
 };
-use crate::source::words::{AXES, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of};
+use crate::source::words::{
+    AXES, BETWEEN, BEYOND, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of,
+};
 
 /// The longest list that stays on one line, in columns; three levels of indentation keep it within 120.
 const LINE: usize = 108;
@@ -54,7 +56,7 @@ pub(super) fn statements(f: &mut Formatter<'_>, items: &[Item]) -> Result {
 const fn section(item: &Item) -> Option<u8> {
     match item {
         Item::Parameter(_) | Item::Input(_) => Some(0),
-        Item::Let(_) => Some(1),
+        Item::Let(_) | Item::Table(_) => Some(1),
         Item::Junction(_) | Item::Element(_) => Some(2),
         Item::Chain(_) => Some(3),
         Item::Track(_) => Some(4),
@@ -128,6 +130,7 @@ impl Display for Item {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match self {
             Self::Parameter(parameter) => parameter.fmt(f),
+            Self::Table(table) => table.fmt(f),
             Self::Input(input) => input.fmt(f),
             Self::Let(binding) => binding.fmt(f),
             Self::Junction(junction) => junction.fmt(f),
@@ -537,6 +540,20 @@ impl Display for Orifice {
         setting(&mut entries, "laminar", self.laminar.as_ref());
         write!(f, "orifice {} on {}", self.name, self.target)?;
         settings(f, &entries)
+    }
+}
+
+impl Display for Table {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let Self { name, argument, value, points, between, beyond } = self;
+        write!(f, "table {name}: {argument} -> {value} = {points}")?;
+        if *between != Between::default() {
+            write!(f, ", {}", word_of(&BETWEEN, between))?;
+        }
+        if *beyond != Beyond::default() {
+            write!(f, ", {}", word_of(&BEYOND, beyond))?;
+        }
+        f.write_str(";")
     }
 }
 

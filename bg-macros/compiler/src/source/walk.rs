@@ -33,6 +33,10 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
             each(Met::Declared(&mut binding.name));
             values([&mut binding.value], each);
         }
+        Item::Table(table) => {
+            each(Met::Declared(&mut table.name));
+            values([&mut table.points], each);
+        }
         Item::Junction(junction) => each(Met::Declared(&mut junction.name)),
         Item::Element(element) => of_element(element, each),
         Item::Chain(chain) => chain.iter_mut().for_each(|name| each(Met::Named(name))),
@@ -104,7 +108,7 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
     }
 }
 
-/// Hands every name in an expression to `each`, as the expression that it is.
+/// Hands every name in an expression to `each`, as the expression that it is; of a function's name the call.
 pub(crate) fn each_name(expression: &mut Expression, each: &mut dyn FnMut(&mut Expression)) {
     match &mut expression.kind {
         ExpressionKind::Number(_) | ExpressionKind::Quantity(..) => {}
@@ -114,9 +118,11 @@ pub(crate) fn each_name(expression: &mut Expression, each: &mut dyn FnMut(&mut E
             each_name(first, each);
             rest.iter_mut().for_each(|operation| each_name(&mut operation.operand, each));
         }
-        ExpressionKind::Call(_, arguments) | ExpressionKind::Vector(arguments) => {
+        ExpressionKind::Call(_, arguments) => {
             arguments.iter_mut().for_each(|argument| each_name(argument, each));
+            each(expression);
         }
+        ExpressionKind::Vector(parts) => parts.iter_mut().for_each(|part| each_name(part, each)),
         ExpressionKind::If(choice) => {
             let parts = [&mut choice.left, &mut choice.right, &mut choice.then, &mut choice.otherwise];
             parts.into_iter().for_each(|part| each_name(part, each));

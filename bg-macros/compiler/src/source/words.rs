@@ -1,6 +1,8 @@
 //! The words and symbols of the language that stand for one value each, for the parser and the printer alike.
 
-use crate::source::ast::{Axis, BinaryOperator, Comparison, DriveKind, ElementKind, Role, StartKind, TrackKind};
+use crate::source::ast::{
+    Axis, Between, Beyond, BinaryOperator, Comparison, DriveKind, ElementKind, Role, StartKind, TrackKind,
+};
 
 /// The elements' symbols.
 pub(crate) const ELEMENTS: [(&str, ElementKind); 13] = [
@@ -25,6 +27,13 @@ pub(crate) const AXES: [(&str, Axis); 3] = [("x", Axis::X), ("y", Axis::Y), ("z"
 /// What a drive prescribes.
 pub(crate) const DRIVES: [(&str, DriveKind); 3] =
     [("torque", DriveKind::Torque), ("force", DriveKind::Force), ("speed", DriveKind::Speed)];
+
+/// What a table is between its points.
+pub(crate) const BETWEEN: [(&str, Between); 3] =
+    [("straight", Between::Straight), ("monotone", Between::Monotone), ("spline", Between::Spline)];
+
+/// What a table is beyond its points, where that is said.
+pub(crate) const BEYOND: [(&str, Beyond); 2] = [("held", Beyond::Held), ("continued", Beyond::Continued)];
 
 /// What a track follows.
 pub(crate) const TRACKS: [(&str, TrackKind); 2] =

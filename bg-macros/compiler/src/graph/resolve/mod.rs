@@ -5,6 +5,7 @@
 mod connect;
 mod dependencies;
 mod quantity;
+mod tables;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,6 +13,7 @@ use bg_units::Unit;
 use proc_macro2::Span;
 
 use self::quantity::scaled;
+use self::tables::nearest_call;
 use super::term::{Builtin, Operation, Reference, Term, TermKind};
 use super::typing::Shape;
 use super::{
@@ -33,6 +35,8 @@ pub enum Entity {
     Input(usize),
     /// A named expression.
     Let(usize),
+    /// A function given by points.
+    Table(usize),
     /// A junction or element.
     Node(NodeId),
     /// A position or orientation.
@@ -110,6 +114,7 @@ impl Resolver {
             parameters: Vec::new(),
             inputs: Vec::new(),
             lets: Vec::new(),
+            tables: Vec::new(),
             nodes: Vec::new(),
             bonds: Vec::new(),
             tracks: Vec::new(),
@@ -185,6 +190,7 @@ impl Resolver {
                     self.name(&definition.name, Entity::Let(lets));
                     lets += 1;
                 }
+                Item::Table(table) => self.table(table),
                 Item::Junction(junction) => {
                     self.junction(junction, NodeId(nodes));
                     nodes += 1;
@@ -456,6 +462,9 @@ impl Resolver {
     fn call(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
         let span = function.span;
         let mut terms: Vec<Term> = arguments.iter().map(|argument| self.term(argument, place)).collect();
+        if let Some(&Entity::Table(table)) = self.names.get(&function.text) {
+            return self.lookup(table, function, terms);
+        }
         let builtin = Builtin::named(&function.text);
         let expected = match function.text.as_str() {
             "guess" | "integral" => Some(1),
@@ -464,7 +473,7 @@ impl Resolver {
         };
         match expected {
             None => {
-                let near = near_miss(&function.text, Builtin::names()).map(str::to_owned);
+                let near = nearest_call(&function.text, &self.graph.tables);
                 self.fault(span, &GraphFault::UnknownFunction { name: function.text.clone(), near });
             }
             Some(expected) if expected != terms.len() => {
@@ -525,7 +534,9 @@ impl Resolver {
             return Term { kind: TermKind::Component(Box::new(whole), component), span };
         }
         let owner = name.rsplit_once('.').map_or(name, |(owner, _)| owner);
-        if let Some(Entity::Node(_)) = self.names.get(name) {
+        if let Some(Entity::Table(_)) = self.names.get(name) {
+            self.fault(span, &GraphFault::TableWithoutArgument { name: name.to_owned() });
+        } else if let Some(Entity::Node(_)) = self.names.get(name) {
             self.fault(span, &GraphFault::NotAValue { name: name.to_owned() });
         } else if ![name, owner].iter().any(|name| self.names.get(*name) == Some(&Entity::Several)) {
             let near = near_miss(name, self.names.keys().map(String::as_str)).map(str::to_owned);
@@ -552,7 +563,7 @@ impl Resolver {
             Some(Entity::Input(index)) => return Some(Reference::Input(*index)),
             Some(Entity::Let(index)) => return Some(Reference::Let(*index)),
             Some(Entity::Track(index)) => return Some(Reference::Track(*index)),
-            Some(Entity::Node(_) | Entity::Several) | None => {}
+            Some(Entity::Table(_) | Entity::Node(_) | Entity::Several) | None => {}
         }
         let (whole, property) = name.rsplit_once('.')?;
         let Some(Entity::Node(node)) = self.names.get(whole) else { return None };

@@ -60,9 +60,12 @@ impl Flat {
     pub fn under(mut self, path: &str) -> Self {
         let points = self.ground_points();
         let moved = |name: &str| moved(name, path, &points);
-        self.items.iter_mut().for_each(|item| walk(item, &mut |met| rename(met, path, &moved)));
+        let tables = self.tables();
+        self.items.iter_mut().for_each(|item| walk(item, &mut |met| rename(met, path, &moved, &tables)));
         self.names.iter_mut().for_each(|name| *name = format!("{path}.{name}"));
-        self.outputs.iter_mut().for_each(|output| of_observation(output, &mut |met| rename(met, path, &moved)));
+        self.outputs
+            .iter_mut()
+            .for_each(|output| of_observation(output, &mut |met| rename(met, path, &moved, &tables)));
         self.ports.iter_mut().for_each(|port| port.text = format!("{path}.{}", port.text));
         self.aliases = self.aliases.iter().map(|(name, of)| (format!("{path}.{name}"), moved(of))).collect();
         self.uses.iter_mut().for_each(|used| used.path = joined(path, &used.path));
@@ -80,6 +83,13 @@ impl Flat {
         self.outputs.push(Observation { name: output.name.clone().or(named), ..output });
     }
 
+    /// The names of its tables, which expressions call as they call functions.
+    fn tables(&self) -> BTreeSet<String> {
+        let tables =
+            self.items.iter().filter_map(|item| if let Item::Table(table) = item { Some(table) } else { None });
+        tables.map(|table| table.name.text.clone()).collect()
+    }
+
     /// The ground's points of this part.
     fn ground_points(&self) -> BTreeSet<String> {
         let grounds =
@@ -93,16 +103,16 @@ fn joined(path: &str, name: &str) -> String {
     if name.is_empty() { path.to_owned() } else { format!("{path}.{name}") }
 }
 
-fn rename(met: Met, path: &str, moved: &dyn Fn(&str) -> String) {
+fn rename(met: Met, path: &str, moved: &dyn Fn(&str) -> String, tables: &BTreeSet<String>) {
     match met {
         Met::Declared(name) => name.text = joined(path, &name.text),
         Met::Named(name) | Met::Index(name) => name.text = moved(&name.text),
-        Met::Value(value, variable) => each_name(value, &mut |value| {
-            if let ExpressionKind::Name(name) = &mut value.kind
-                && !variable.is_some_and(|variable| is_at(&name.text, variable))
-            {
+        Met::Value(value, variable) => each_name(value, &mut |value| match &mut value.kind {
+            ExpressionKind::Name(name) if !variable.is_some_and(|variable| is_at(&name.text, variable)) => {
                 name.text = moved(&name.text);
             }
+            ExpressionKind::Call(name, _) if tables.contains(&name.text) => name.text = moved(&name.text),
+            _ => {}
         }),
     }
 }

@@ -156,10 +156,6 @@ impl Cursor<'_> {
         let Some(arguments) = self.enter(Delimiter::Parenthesis, &GROUP) else {
             return self.above(0, ExpressionKind::Name(name), span);
         };
-        if let Some((value, function)) = name.text.rsplit_once('.') {
-            let instead = format!("{function}({value})");
-            return Err(self.note(span, &SyntaxFault::DottedName { what: "a function", name: name.text, instead }));
-        }
         let (arguments, height) = arguments.elements("`,` or `)`")?;
         self.above(height, ExpressionKind::Call(name, arguments), span)
     }

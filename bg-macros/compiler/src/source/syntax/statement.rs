@@ -12,9 +12,9 @@ use super::{
 use crate::fault::near_miss;
 use crate::source::ast::{
     Bound, Close, Direction, Element, ElementKind, Expression, ExpressionKind, Held, Input, Item, Junction,
-    JunctionKind, LawVariable, Let, Name, Parameter, Track, TrackKind, Unit,
+    JunctionKind, LawVariable, Let, Name, Parameter, Table, Track, TrackKind, Unit,
 };
-use crate::source::words::{ELEMENTS, ROLES, TRACKS, value_of};
+use crate::source::words::{BETWEEN, BEYOND, ELEMENTS, ROLES, TRACKS, value_of};
 
 /// The block of a graph.
 pub(super) const GRAPH: Place = Place { name: "a graph", words: &WORDS, list: false };
@@ -33,7 +33,7 @@ const WORDS_OF_PART: &[&str] = {
 };
 
 /// The words of a graph.
-const WORDS: [&str; 39] = [
+const WORDS: [&str; 40] = [
     "param",
     "1",
     "R",
@@ -41,6 +41,7 @@ const WORDS: [&str; 39] = [
     "scene",
     "input",
     "let",
+    "table",
     "0",
     "Se",
     "Sf",
@@ -139,6 +140,7 @@ fn bond_graph_item(cursor: &mut Cursor, word: &str) -> Parsed<Item> {
     }
     match word {
         "let" => binding(cursor).map(Item::Let),
+        "table" => table(cursor).map(Item::Table),
         "close" => close(cursor).map(Item::Close),
         "observe" => cursor.observe().map(Item::Observe),
         "part" => cursor.part_use().map(Item::Use),
@@ -242,6 +244,33 @@ fn binding(cursor: &mut Cursor) -> Parsed<Let> {
     let value = unit.iter().fold(value, Expression::in_unit);
     cursor.end_statement(OPERATOR);
     Ok(Let { name, unit, value, clause: None })
+}
+
+/// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`
+fn table(cursor: &mut Cursor) -> Parsed<Table> {
+    cursor.advance();
+    let name = cursor.declared("the table")?;
+    let argument = declared_unit(cursor, "table", &name)?;
+    cursor.expect("->")?;
+    let value = cursor.unit()?;
+    cursor.expect("=")?;
+    let points = cursor.expression()?;
+    let (mut between, mut beyond) = (None, None);
+    while cursor.eat(",").is_some() {
+        let span = cursor.span();
+        let word = cursor.word().unwrap_or_default();
+        if let Some(given) = value_of(&BETWEEN, word) {
+            cursor.fill(&mut between, given, "form of the lines between points", span);
+        } else if let Some(given) = value_of(&BEYOND, word) {
+            cursor.fill(&mut beyond, given, "word for what is beyond the points", span);
+        } else {
+            return Err(cursor.unexpected("`straight`, `monotone`, `spline`, `held` or `continued`"));
+        }
+        cursor.advance();
+    }
+    cursor.end_statement("`,`");
+    let (between, beyond) = (between.unwrap_or_default(), beyond.unwrap_or_default());
+    Ok(Table { name, argument, value, points, between, beyond })
 }
 
 /// Whether a name is ahead that is no slip of a statement's word, and after it a symbol where `->` could be meant.

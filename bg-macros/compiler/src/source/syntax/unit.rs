@@ -2,6 +2,8 @@
 //!
 //! In: the tokens after a `:`, or after a number. Out: a [`Unit`]; after a `:` whether its symbols are known is for a later stage.
 
+use proc_macro2::Delimiter;
+
 use super::{
     SyntaxFault,
     cursor::{Cursor, Parsed, Reported},
@@ -25,10 +27,11 @@ impl Cursor<'_> {
         Ok(Some(Unit { factors, span: joined(start, self.last_span()) }))
     }
 
-    /// Whether the token `ahead` is the symbol of a unit, and no function or group of names.
+    /// Whether the token `ahead` is the symbol of a unit, and neither calls a function nor begins a name with dots.
     fn is_symbol_of_unit(&self, ahead: usize) -> bool {
         let is_known = self.word_ahead(ahead).is_some_and(|word| bg_units::Unit::of_symbol(word).is_some());
-        is_known && !self.symbol_ahead(ahead + 1, ".") && !matches!(self.ahead(ahead + 1), Some(TokenKind::Group(_)))
+        let is_call = matches!(self.ahead(ahead + 1), Some(TokenKind::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
+        is_known && !is_call && !self.symbol_ahead(ahead + 1, ".")
     }
 
     /// A unit; each `/` is for the one factor after it.

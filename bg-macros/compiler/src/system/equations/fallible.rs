@@ -90,6 +90,11 @@ impl Signals<'_> {
             TermKind::Reference(Reference::Let(index)) => self.nature_of_let(*index),
             TermKind::Reference(_) | TermKind::Integral(_) => Nature { changes: true, is_partial: false },
             TermKind::Component(inner, _) | TermKind::Negate(inner) => self.nature(inner),
+            TermKind::Lookup(table, argument) => {
+                let argument = self.nature(argument);
+                let is_everywhere = self.graph.tables[*table].pieces.iter().all(|piece| piece.cubic.is_some());
+                if is_everywhere { argument } else { argument.partial() }
+            }
             TermKind::Chain(first, rest) => rest.iter().fold(self.nature(first), |left, operation| {
                 let right = self.nature(&operation.operand);
                 left.and(if operation.operator == BinaryOperator::Divide { right.partial() } else { right })

@@ -30,6 +30,7 @@ pub mod solution;
 mod solving;
 mod stop;
 mod storage;
+mod tables;
 mod terms;
 #[cfg(test)]
 mod tests;

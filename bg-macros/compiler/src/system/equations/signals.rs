@@ -63,6 +63,8 @@ pub(super) struct Signals<'a> {
     /// What solutions divide by and parameters may make zero.
     pub(super) pivots: Vec<Pivot>,
     pub(super) switches: Vec<Switch>,
+    /// While the energy of a law is found: the tables that the law asks, with their arguments.
+    pub(super) asked: Option<Vec<(usize, Id)>>,
     /// What is being evaluated, for the switches' names.
     pub(super) owner: String,
     pub(super) fallible: Vec<FallibleLaw>,
@@ -94,6 +96,7 @@ impl<'a> Signals<'a> {
             loops: Vec::new(),
             pivots: Vec::new(),
             switches: Vec::new(),
+            asked: None,
             owner: String::new(),
             fallible: Vec::new(),
             natures: vec![None; causal.graph.lets.len()],

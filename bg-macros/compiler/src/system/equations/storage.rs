@@ -183,21 +183,28 @@ impl Signals<'_> {
     fn found_energy(&mut self, node: NodeId, element: &Element, state: &Value) -> Id {
         let switches = self.switches.len();
         let (own, variable) = self.own_symbols(state.0.len());
-        let law = self.storage_law(node, element, &variable);
+        let (asked, law) = self.asking(|signals| signals.storage_law(node, element, &variable));
         // Switches over the storage's own symbols are of this calculation only; a law with any has no integral here.
         // The antiderivative would not see that a value depends on the variable by way of a guard alone.
         let is_own =
             |id: &Id| matches!(self.pool.node(*id), Node::Select { switch, .. } if *switch as usize >= switches);
         let is_free = law.0.len() == 1 && !self.pool.reachable(&law.0).iter().any(is_own);
         self.switches.truncate(switches);
-        let found = if is_free { antiderivative(&mut self.pool, law.0[0], own[0]) } else { None };
-        let Some(found) = found else {
+        let found = if is_free {
+            let rest = self.without_tables(&asked, law.0[0]);
+            antiderivative(&mut self.pool, rest, own[0])
+        } else {
+            None
+        };
+        let of_tables = if is_free { self.integral_of_tables(&asked, law.0[0], own[0], state.0[0]) } else { None };
+        let (Some(found), Some(of_tables)) = (found, of_tables) else {
             let definition = self.graph.node(node);
             let (symbol, name) = (element.kind.symbol(), definition.name.text.clone());
             self.fault_once(Fault::new(element.law.term().span, &EquationFault::NoEnergy { symbol, name }));
             return self.pool.zero();
         };
-        substitute(&mut self.pool, &[found], &|symbol| (symbol == own[0]).then_some(state.0[0]))[0]
+        let found = substitute(&mut self.pool, &[found], &|symbol| (symbol == own[0]).then_some(state.0[0]))[0];
+        self.pool.add(found, of_tables)
     }
 
     /// Reports a fault unless it is known.

@@ -20,6 +20,10 @@ impl Signals<'_> {
                 let inner = self.evaluate(inner, variable);
                 Value::scalar(inner.0[*index])
             }
+            TermKind::Lookup(table, argument) => {
+                let argument = self.evaluate(argument, variable).0[0];
+                Value::scalar(self.lookup(*table, argument, variable.is_some()))
+            }
             TermKind::Negate(inner) => {
                 let inner = self.evaluate(inner, variable);
                 inner.negate(&mut self.pool)
@@ -176,7 +180,7 @@ impl Signals<'_> {
     }
 
     /// One of two values by a comparison; equal guards share one switch, up to their sign.
-    fn choose(
+    pub(super) fn choose(
         &mut self,
         (comparison, condition): (Comparison, &str),
         (left, right): (Id, Id),
