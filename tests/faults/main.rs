@@ -124,10 +124,6 @@ const GRAPH: [(&str, &str); 40] = [
         "BG0339",
         "table c: m -> N = [[0, 1], [▸0, 2], [1, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
     ),
-    (
-        "BG0339",
-        "table c: m -> N = [[0, 1], ▸[1, 2, 3], [2, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
-    ),
     ("BG0340", "table c: m -> N = [[0, 1], [1, 2]]; 1 j: translation; I m = 2; C k(q) = ▸c * q; j -> m; j -> k;"),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
@@ -199,7 +195,10 @@ const VALUES: [(&str, &str); 4] = [
 /// More of what has a code: other words of it, and where they stand.
 const MORE: [(&str, &str); 45] = [
     ("BG0339", "table ▸c: m -> N = [[0, 1]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;"),
-    ("BG0339", "table c: m -> N = [[0, 1], ▸[1, 2, 3], [2, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;"),
+    (
+        "BG0339",
+        "table c: m -> N = [[0, 1], ▸[1, 2, 3], [2, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
+    ),
     ("BG0102", "1 slide ▸translation; I m = 2; slide -> m;"),
     ("BG0102", "let stiffness ▸N = 2;\n1 slide: translation; I m = 2; slide -> m;"),
     ("BG0102", "body rod { mass 1; inertia [1, 1, 1]; point end = [0, 1, 0]; start end at 0▸, 1, 0; }"),

@@ -106,7 +106,7 @@ pub enum StateKind {
     /// The displacement of a scalar 1-junction, or the angle of a joint or body, rad, with its turns: where a law or an
     /// output reads it.
     Way,
-    /// The integral that an output asks for.
+    /// The integral that an output asks for, or a state of the graph's own.
     Integral,
 }
 

@@ -4,6 +4,7 @@ mod all_reactions;
 mod angles;
 mod bricard;
 mod closed_loops;
+mod controllers;
 mod double_wishbone;
 mod governor;
 mod hand;

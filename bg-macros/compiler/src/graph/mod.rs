@@ -68,7 +68,7 @@ pub struct BondGraph {
     pub turns: Vec<Turn>,
     /// The scalar 1-junctions whose displacement something reads, each one state.
     pub ways: Vec<NodeId>,
-    /// Time integrals that outputs ask for, each one state.
+    /// Time integrals, each one state: those of the graph's own, then those that outputs ask for.
     pub integrals: Vec<Integral>,
     /// What the mechanism looks like.
     pub drawing: Drawing<Term>,
@@ -341,15 +341,19 @@ pub struct Turn {
     pub is_read: bool,
 }
 
-/// A time integral.
+/// A time integral: one that an output asks for, or a state of the graph's own.
 #[derive(Clone, Debug)]
 pub struct Integral {
-    /// The name of its state: that of the output which asks for it.
+    /// The name of its state: its own, or that of the output which asks for it.
     pub name: String,
     /// The integrand.
     pub value: Term,
     /// The integrand's dimension.
     pub dimension: Dimension,
+    /// Its dimension, where it is declared.
+    pub declared: Option<Dimension>,
+    /// Its value at t = 0.
+    pub start: Option<Term>,
 }
 
 impl Turn {
@@ -420,6 +424,7 @@ impl BondGraph {
         self.observations.iter().for_each(|observation| each(&observation.value));
         self.guesses.iter().for_each(&mut *each);
         self.integrals.iter().for_each(|integral| each(&integral.value));
+        self.integrals.iter().filter_map(|integral| integral.start.as_ref()).for_each(&mut *each);
         let clauses = self.lets.iter().filter(|definition| definition.clause.is_some());
         clauses.for_each(|definition| each(&definition.value));
     }

@@ -86,6 +86,8 @@ pub enum Reference {
     Turn(usize),
     /// The momentum of an I.
     Momentum(NodeId),
+    /// A state of the graph's own, an index into `integrals`.
+    Own(usize),
     /// The energy of all storage elements, J.
     StoredEnergy,
     /// The power of all sources into the model, W.

@@ -150,6 +150,9 @@ impl<'a> Types<'a> {
                 TrackKind::Orientation => (Shape::Matrix, Quantity::Known(Dimension::NONE)),
             },
             Reference::Turn(_) => known(Dimension::NONE),
+            Reference::Own(index) => {
+                known(self.graph.integrals[index].declared.expect("a state of the graph's own has a unit"))
+            }
             Reference::Flow(node) => self.of_node(node, |_, flow| flow),
             Reference::Effort(node) => self.of_node(node, |effort, _| effort),
             Reference::Displacement(node) => self.of_node(node, |_, flow| flow.times(Dimension::SECOND)),

@@ -92,6 +92,8 @@ pub enum Item {
     Input(Input),
     /// `let NAME: UNIT = EXPRESSION;` a name for an expression (UNIT may be left out).
     Let(Let),
+    /// `state NAME: UNIT = RATE start E;`
+    State(State),
     /// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`
     Table(Table),
     /// `1 NAME;`, `0 NAME[3]: translation;`
@@ -206,6 +208,19 @@ pub struct Let {
     pub value: Expression,
     /// The clause of a mechanism word that it stands for, if any.
     pub clause: Option<Clause>,
+}
+
+/// A state of the graph's own, which no element stores: a controller's.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// Its name.
+    pub name: Name,
+    /// Its unit.
+    pub unit: Unit,
+    /// How fast it changes.
+    pub rate: Expression,
+    /// Its value at t = 0; 0 when left out.
+    pub start: Option<Expression>,
 }
 
 /// A function of one variable that is given by points.

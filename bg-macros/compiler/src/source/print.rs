@@ -9,7 +9,7 @@ use crate::source::ast::{
     Axis, AxisLaw, Baumgarte, Between, Beyond, Body, Bound, Choice, Close, Contact, Direction, Drive, Element,
     ElementKind, Ends, Expectation, Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input, Item,
     Joint, JointKind, Junction, JunctionKind, LawVariable, Let, Name, Observation, Operation, Orifice, Parameter, Part,
-    Point, Rigid, Role, Scene, Shape, Solid, Source, Spring, Stop, Table, Track, Tune, Unit, Watch,
+    Point, Rigid, Role, Scene, Shape, Solid, Source, Spring, State, Stop, Table, Track, Tune, Unit, Watch,
 };
 use crate::source::words::{
     AXES, BETWEEN, BEYOND, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of,
@@ -56,7 +56,7 @@ pub(super) fn statements(f: &mut Formatter<'_>, items: &[Item]) -> Result {
 const fn section(item: &Item) -> Option<u8> {
     match item {
         Item::Parameter(_) | Item::Input(_) => Some(0),
-        Item::Let(_) | Item::Table(_) => Some(1),
+        Item::Let(_) | Item::Table(_) | Item::State(_) => Some(1),
         Item::Junction(_) | Item::Element(_) => Some(2),
         Item::Chain(_) => Some(3),
         Item::Track(_) => Some(4),
@@ -131,6 +131,7 @@ impl Display for Item {
         match self {
             Self::Parameter(parameter) => parameter.fmt(f),
             Self::Table(table) => table.fmt(f),
+            Self::State(state) => state.fmt(f),
             Self::Input(input) => input.fmt(f),
             Self::Let(binding) => binding.fmt(f),
             Self::Junction(junction) => junction.fmt(f),
@@ -540,6 +541,12 @@ impl Display for Orifice {
         setting(&mut entries, "laminar", self.laminar.as_ref());
         write!(f, "orifice {} on {}", self.name, self.target)?;
         settings(f, &entries)
+    }
+}
+
+impl Display for State {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        write!(f, "state {}: {} = {}{};", self.name, self.unit, self.rate, clause("start", self.start.as_ref()))
     }
 }
 

@@ -33,6 +33,10 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
             each(Met::Declared(&mut binding.name));
             values([&mut binding.value], each);
         }
+        Item::State(state) => {
+            each(Met::Declared(&mut state.name));
+            values(std::iter::once(&mut state.rate).chain(&mut state.start), each);
+        }
         Item::Table(table) => {
             each(Met::Declared(&mut table.name));
             values([&mut table.points], each);

@@ -59,12 +59,13 @@ impl Resolver {
                 K::Se | K::Sf => is_given(*reference),
                 K::Tf | K::Gy => is_constant(*reference),
                 K::R if linear => is_constant(*reference),
-                K::I | K::C | K::RSe => !matches!(reference, Reference::Input(_)),
+                K::I | K::C | K::RSe => !matches!(reference, Reference::Input(_) | Reference::Own(_)),
+                K::Mtf => !matches!(reference, Reference::Own(_)),
                 _ => true,
             };
             if let Some(reference) = depends.iter().find(|reference| !allowed(reference)) {
                 let (symbol, name, by) = (element.kind.symbol(), node.name.text.clone(), self.describe(*reference));
-                let fault = if matches!(element.kind, K::I | K::C | K::RSe) {
+                let fault = if matches!(element.kind, K::I | K::C | K::RSe | K::Mtf) {
                     GraphFault::NotConstant { what: format!("the law of {symbol} `{name}`"), by }
                 } else {
                     GraphFault::Modulated { symbol, name, by }
@@ -80,6 +81,11 @@ impl Resolver {
                     let what = format!("the `{clause}` of `{}`", node.name.text);
                     Fault::new(term.span, &GraphFault::NotConstant { what, by: self.describe(by) })
                 }));
+            }
+        }
+        for integral in &self.graph.integrals {
+            if let Some(start) = &integral.start {
+                faults.extend(self.start_depends(start, &integral.name, &is_constant));
             }
         }
         for track in &self.graph.tracks {
@@ -191,6 +197,7 @@ impl Resolver {
             Reference::Displacement(id) => format!("the displacement of `{}`", node(id)),
             Reference::Turn(index) => format!("the angle `{}`", self.graph.turns[index].name),
             Reference::Momentum(id) => format!("the momentum of `{}`", node(id)),
+            Reference::Own(index) => format!("the state `{}`", self.graph.integrals[index].name),
             Reference::StoredEnergy => "the stored energy".to_owned(),
             Reference::SuppliedPower => "the supplied power".to_owned(),
             Reference::DissipatedPower => "the dissipated power".to_owned(),
@@ -234,6 +241,22 @@ impl Resolver {
         }
         let known = |quantity| if let Quantity::Known(dimension) = quantity { dimension } else { Dimension::NONE };
         let closed: Vec<_> = self.graph.closes.iter().map(|close| types.of(&close.gap, None, &mut faults)).collect();
+        for integral in &self.graph.integrals {
+            let (Some(start), Some(declared)) = (&integral.start, integral.declared) else { continue };
+            let (shape, quantity) = types.of(start, None, &mut faults);
+            let what = || format!("the start of `{}`", integral.name);
+            if shape != Shape::Scalar {
+                faults.push(Fault::new(
+                    start.span,
+                    &GraphFault::ShapeOf { what: what(), expected: Shape::Scalar, found: shape },
+                ));
+            } else if let Quantity::Known(found) = quantity
+                && found != declared
+            {
+                let what = format!("{} is to have the first and has the second", what());
+                faults.push(Fault::new(start.span, &GraphFault::Units { what, left: declared, right: found }));
+            }
+        }
         let integrands: Vec<_> =
             self.graph.integrals.iter().map(|integral| types.of(&integral.value, None, &mut faults)).collect();
         for (observation, (shape, unit)) in self.graph.observations.iter_mut().zip(observed) {
@@ -247,6 +270,15 @@ impl Resolver {
             if shape != Shape::Scalar {
                 let what = "an integrand".to_owned();
                 let fault = GraphFault::ShapeOf { what, expected: Shape::Scalar, found: shape };
+                faults.push(Fault::new(integral.value.span, &fault));
+            }
+            let Some(declared) = integral.declared else { continue };
+            integral.dimension = declared.per(Dimension::SECOND);
+            if let Quantity::Known(found) = quantity
+                && found != integral.dimension
+            {
+                let what = format!("the rate of `{}` is to have the first and has the second", integral.name);
+                let fault = GraphFault::Units { what, left: integral.dimension, right: found };
                 faults.push(Fault::new(integral.value.span, &fault));
             }
         }

@@ -37,6 +37,8 @@ pub enum Entity {
     Let(usize),
     /// A function given by points.
     Table(usize),
+    /// A state of the graph's own.
+    Own(usize),
     /// A junction or element.
     Node(NodeId),
     /// A position or orientation.
@@ -191,6 +193,7 @@ impl Resolver {
                     lets += 1;
                 }
                 Item::Table(table) => self.table(table),
+                Item::State(state) => self.declare_state(state),
                 Item::Junction(junction) => {
                     self.junction(junction, NodeId(nodes));
                     nodes += 1;
@@ -263,9 +266,18 @@ impl Resolver {
         }
     }
 
+    /// A state of the graph's own, without its terms.
+    fn declare_state(&mut self, state: &ast::State) {
+        let unit = self.unit(&state.unit);
+        self.name(&state.name, Entity::Own(self.graph.integrals.len()));
+        let value = Term { kind: TermKind::Number(0.0), span: state.name.span };
+        let (name, declared) = (state.name.text.clone(), Some(unit.dimension));
+        self.graph.integrals.push(Integral { name, value, dimension: Dimension::NONE, declared, start: None });
+    }
+
     /// Second pass: every item gets its terms.
     fn define(&mut self, source: &ast::Graph) {
-        let mut tracks = 0;
+        let (mut tracks, mut own) = (0, 0);
         for item in &source.items {
             match item {
                 Item::Let(definition) => {
@@ -283,6 +295,13 @@ impl Resolver {
                         JunctionKind::One => NodeKind::One,
                     };
                     self.graph.nodes.push(Node { name: junction.name.clone(), kind, bonds: Vec::new() });
+                }
+                Item::State(state) => {
+                    let rate = self.term(&state.rate, Place::Law(None));
+                    let start = state.start.as_ref().map(|start| self.term(start, Place::Start));
+                    let known = &mut self.graph.integrals[own];
+                    (known.value, known.start) = (rate, start);
+                    own += 1;
                 }
                 Item::Element(element) => self.element(element),
                 Item::Track(_) => {
@@ -498,7 +517,8 @@ impl Resolver {
                     self.fault(span, &GraphFault::IntegralOutsideObserve);
                 }
                 let (value, name) = (terms.remove(0), String::new());
-                self.graph.integrals.push(Integral { name, value, dimension: Dimension::NONE });
+                let dimension = Dimension::NONE;
+                self.graph.integrals.push(Integral { name, value, dimension, declared: None, start: None });
                 TermKind::Integral(self.graph.integrals.len() - 1)
             }
             ("unwrapped", _) => {
@@ -563,6 +583,7 @@ impl Resolver {
             Some(Entity::Input(index)) => return Some(Reference::Input(*index)),
             Some(Entity::Let(index)) => return Some(Reference::Let(*index)),
             Some(Entity::Track(index)) => return Some(Reference::Track(*index)),
+            Some(Entity::Own(index)) => return Some(Reference::Own(*index)),
             Some(Entity::Table(_) | Entity::Node(_) | Entity::Several) | None => {}
         }
         let (whole, property) = name.rsplit_once('.')?;

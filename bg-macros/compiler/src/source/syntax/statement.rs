@@ -12,7 +12,7 @@ use super::{
 use crate::fault::near_miss;
 use crate::source::ast::{
     Bound, Close, Direction, Element, ElementKind, Expression, ExpressionKind, Held, Input, Item, Junction,
-    JunctionKind, LawVariable, Let, Name, Parameter, Table, Track, TrackKind, Unit,
+    JunctionKind, LawVariable, Let, Name, Parameter, State, Table, Track, TrackKind, Unit,
 };
 use crate::source::words::{BETWEEN, BEYOND, ELEMENTS, ROLES, TRACKS, value_of};
 
@@ -33,7 +33,7 @@ const WORDS_OF_PART: &[&str] = {
 };
 
 /// The words of a graph.
-const WORDS: [&str; 40] = [
+const WORDS: [&str; 41] = [
     "param",
     "1",
     "R",
@@ -42,6 +42,7 @@ const WORDS: [&str; 40] = [
     "input",
     "let",
     "table",
+    "state",
     "0",
     "Se",
     "Sf",
@@ -141,6 +142,7 @@ fn bond_graph_item(cursor: &mut Cursor, word: &str) -> Parsed<Item> {
     match word {
         "let" => binding(cursor).map(Item::Let),
         "table" => table(cursor).map(Item::Table),
+        "state" => state(cursor).map(Item::State),
         "close" => close(cursor).map(Item::Close),
         "observe" => cursor.observe().map(Item::Observe),
         "part" => cursor.part_use().map(Item::Use),
@@ -244,6 +246,18 @@ fn binding(cursor: &mut Cursor) -> Parsed<Let> {
     let value = unit.iter().fold(value, Expression::in_unit);
     cursor.end_statement(OPERATOR);
     Ok(Let { name, unit, value, clause: None })
+}
+
+/// `state NAME: UNIT = RATE start E;`
+fn state(cursor: &mut Cursor) -> Parsed<State> {
+    cursor.advance();
+    let name = cursor.declared("the state")?;
+    let unit = declared_unit(cursor, "state", &name)?;
+    cursor.expect("=")?;
+    let rate = cursor.expression()?;
+    let start = if cursor.eat_word("start").is_some() { Some(cursor.expression()?.in_unit(&unit)) } else { None };
+    cursor.end_statement(if start.is_some() { OPERATOR } else { "`start`" });
+    Ok(State { name, unit, rate, start })
 }
 
 /// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`

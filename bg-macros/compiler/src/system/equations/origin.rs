@@ -25,7 +25,7 @@ pub enum Origin {
     Speed(usize, usize),
     /// The displacement of a scalar 1-junction.
     Way(NodeId),
-    /// The integral that an output asks for; its index.
+    /// The integral that an output asks for, or a state of the graph's own; its index.
     Integral(usize),
 }
 

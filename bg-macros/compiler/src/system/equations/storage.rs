@@ -111,6 +111,11 @@ impl Signals<'_> {
                 self.states[state].start = start.0[k.min(start.0.len() - 1)];
             }
         }
+        for (index, integral) in graph.integrals.iter().enumerate() {
+            if let Some(start) = &integral.start {
+                self.states[self.first_integral + index].start = self.evaluate(start, None).0[0];
+            }
+        }
         self.starts_by_pose();
         self.way_starts();
     }

@@ -72,6 +72,7 @@ impl Signals<'_> {
             Reference::Parameter(index) => Value::scalar(self.numbered(index, Symbol::Parameter)),
             Reference::Input(index) => Value::scalar(self.numbered(index, Symbol::Input)),
             Reference::Let(index) => self.named_expression(index),
+            Reference::Own(index) => Value::scalar(self.state_symbol(self.first_integral + index)),
             Reference::Track(index) => self.state(Storage::Track(index)).expect("every track has states"),
             Reference::Flow(node) => self.node_flow(node),
             Reference::Effort(node) => {
