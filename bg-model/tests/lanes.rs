@@ -6,7 +6,7 @@ use bg_model::integrator::Integrator;
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::Parameters;
 use bg_model::run::{LaneError, Request, RunError, Simulation, Trajectory, in_lanes};
-use bg_model::simulation::Samples;
+use bg_model::simulation::{Peaks, Samples};
 use bg_model::statistics::Statistics;
 
 bond_graph! {
@@ -137,7 +137,9 @@ fn told<E: ToString>(run: &Result<Trajectory, E>) -> Result<Told, String> {
     let branches = run.last.negative().unwrap_or_default();
     let branches = branches.into_iter().map(|negative| if negative { 1.0 } else { 0.0 });
     let last: Vec<f64> = run.last.values().into_iter().chain(run.last.largest.clone()).chain(branches).collect();
-    let samples = bits(&run.times).into_iter().chain(columns).collect();
+    let peaks = run.columns.iter().flat_map(|column| [column.peaks, column.settled]).flatten();
+    let peaks = peaks.flat_map(|Peaks { least, largest }| bits(&[least.t, least.value, largest.t, largest.value]));
+    let samples = bits(&run.times).into_iter().chain(columns).chain(peaks).collect();
     Ok(([samples, bits(&run.events), bits(&last)], run.statistics))
 }
 
@@ -242,6 +244,27 @@ fn impacts_and_friction_that_sticks_are_those_of_each_run() {
     assert!(failed == 0 && runs.iter().all(|run| !run.events.is_empty()));
     let (runs, failed) = compared(&belt, &request(5.0, 1e-6), &[("still", [4.5, 8.0]), ("stiffness", [30.0, 90.0])]);
     assert!(failed == 0 && runs.iter().all(|run| run.events.len() > 2));
+}
+
+#[test]
+fn peaks_are_those_of_each_run() {
+    let block = Block::new(BlockParameters::default()).unwrap();
+    let crank = Crank::new(CrankParameters::default()).unwrap();
+    let ball = Ball::new(BallParameters::default()).unwrap();
+    for method in [Integrator::Nystrom, Integrator::Dop853] {
+        let asked = |t_end: f64| Request { peaks: true, settled: Some(0.31 * t_end), ..by(method, t_end, 1e-6) };
+        let runs = [
+            compared(&block, &asked(4.0), &[("mass", [0.5, 2.0]), ("start", [-0.5, 0.5])]),
+            compared(&crank, &asked(1.5), &[("spin", [-9.0, 9.0])]),
+            compared(&ball, &asked(1.5), &[("height", [0.5, 2.0]), ("give", [0.3, 0.9])]),
+        ];
+        for (runs, failed) in runs {
+            assert_eq!(failed, 0, "{method}");
+            let column = |run: &Trajectory| run.columns[0].peaks.zip(run.columns[0].settled);
+            let differ = |run: &&Trajectory| column(run).is_some_and(|(all, late)| all != late);
+            assert!(runs.iter().filter(differ).count() > 5, "{method}");
+        }
+    }
 }
 
 #[test]

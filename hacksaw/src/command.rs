@@ -77,6 +77,10 @@ impl Extras for Paper {
         }
     }
 
+    fn settled(&self) -> Option<f64> {
+        Some(summary::SETTLED)
+    }
+
     /// More than forty samples in each turn of the paper's crank.
     fn finest(&self, _t_end: f64) -> f64 {
         0.002

@@ -2,7 +2,8 @@
 //!
 //! In: a run. Out: lines for people, entries for JSON; of what a scene does not have, no line and a null.
 
-use bg_model::simulation::{MissingColumn, Recording};
+use bg_model::simulation::{MissingColumn, Peaks, Recording};
+use bg_workbench::extras::peaks;
 use bg_workbench::summary::Entry;
 use serde_json::json;
 
@@ -24,7 +25,7 @@ pub fn of_paper(run: &Recording) -> Result<Said, MissingColumn> {
     let energy = run.has("supplied_energy").then(|| Energy::of(run)).transpose()?;
     let part = energy.as_ref().filter(|energy| energy.supplied != 0.0);
     let part = part.map(|energy| energy.residual / energy.supplied.abs());
-    let (gap, speed) = (largest_gap(run)?, crank_speed(run)?);
+    let (gap, speed) = (largest_gap(run), crank_speed(run));
     let mut lines: Vec<(&str, String)> = Vec::new();
     if let Some(Energy { supplied, dissipated, residual: joule }) = energy {
         lines.push(("energy", format!("{supplied:.6} J supplied, {dissipated:.6} J dissipated")));
@@ -37,8 +38,7 @@ pub fn of_paper(run: &Recording) -> Result<Said, MissingColumn> {
     if let Some((joint, gap)) = &gap {
         lines.push(("largest joint gap", format!("{gap:.3e} m, {joint}")));
     }
-    if let Some([mean, low, high]) = speed {
-        let from = if run.times.last().is_some_and(|&reached| reached > SETTLED) { SETTLED } else { 0.0 };
+    if let Some(([mean, low, high], from)) = speed {
         let speed = format!("{mean:.2} rad/s in the mean, {low:.2} to {high:.2} rad/s, from {from} s on");
         lines.push(("crank speed", speed));
     }
@@ -49,7 +49,7 @@ pub fn of_paper(run: &Recording) -> Result<Said, MissingColumn> {
         entry("energy_residual_j", json!(energy.as_ref().map(|energy| energy.residual))),
         entry("energy_residual", json!(part)),
         entry("largest_gap", json!(gap)),
-        entry("crank_speed_rad_per_s", json!(speed)),
+        entry("crank_speed_rad_per_s", json!(speed.map(|(speed, _)| speed))),
     ];
     Ok((lines.into_iter().map(|(name, text)| (name.to_owned(), text)).collect(), entries))
 }
@@ -75,31 +75,29 @@ impl Energy {
     }
 }
 
-fn largest_gap(run: &Recording) -> Result<Option<(String, f64)>, MissingColumn> {
+fn largest_gap(run: &Recording) -> Option<(String, f64)> {
     let mut largest: Option<(String, f64)> = None;
-    for (column, joint) in JOINTS.into_iter().filter(|(column, _)| run.has(column)) {
-        for &gap in run.values(column)? {
-            if largest.as_ref().is_none_or(|(_, most)| gap > *most) {
-                largest = Some((joint.to_owned(), gap));
-            }
+    for (name, joint) in JOINTS {
+        let Some(column) = run.columns.iter().find(|column| column.name == name) else { continue };
+        let gap = peaks(run, column).largest.value;
+        if largest.as_ref().is_none_or(|(_, most)| gap > *most) {
+            largest = Some((joint.to_owned(), gap));
         }
     }
-    Ok(largest)
+    largest
 }
 
-fn crank_speed(run: &Recording) -> Result<Option<[f64; 3]>, MissingColumn> {
-    if !run.has("crank_speed") {
-        return Ok(None);
-    }
-    let (speed, times) = (run.values("crank_speed")?, &run.times);
-    let settled = times.partition_point(|&t| t < SETTLED);
-    let from = if settled + 1 < speed.len() { settled } else { 0 };
-    let (speed, times) = (&speed[from..], &times[from..]);
-    let Some(&first) = speed.first() else { return Ok(None) };
+/// The mean of the crank's speed, its least and its largest value, rad/s, and from when on, s; none where it is no output.
+fn crank_speed(run: &Recording) -> Option<([f64; 3], f64)> {
+    let column = run.columns.iter().find(|column| column.name == "crank_speed")?;
+    let settled = run.times.partition_point(|&t| t < SETTLED);
+    let (from, first) = if settled + 1 < run.times.len() { (SETTLED, settled) } else { (0.0, 0) };
+    let (speed, times) = (&column.values[first..], &run.times[first..]);
     // The trapezoidal rule: samples need not be equally far apart.
     let area: f64 = (1..speed.len()).map(|k| (times[k] - times[k - 1]) * (speed[k] + speed[k - 1]) / 2.0).sum();
-    let duration = times[times.len() - 1] - times[0];
-    let mean = if duration > 0.0 { area / duration } else { first };
-    let (low, high) = speed.iter().fold((first, first), |(low, high), &value| (low.min(value), high.max(value)));
-    Ok(Some([mean, low, high]))
+    let duration = times.last()? - times.first()?;
+    let mean = if duration > 0.0 { area / duration } else { *speed.first()? };
+    let late = column.settled.filter(|_| from == SETTLED);
+    let Peaks { least, largest } = late.unwrap_or_else(|| peaks(run, column));
+    Some(([mean, least.value, largest.value], from))
 }

@@ -10,6 +10,7 @@ mod messages;
 mod no_number;
 mod origins;
 mod parameters;
+mod peaks;
 #[path = "../problems/mod.rs"]
 mod problems;
 #[path = "../random/mod.rs"]
@@ -21,4 +22,7 @@ mod states;
 mod stopping;
 mod switching;
 mod tables;
+#[allow(dead_code, reason = "`mechanisms` uses more of it")]
+#[path = "../mechanisms/text.rs"]
+mod text;
 mod values;

@@ -1,5 +1,6 @@
 //! Runs asked for without const generics: columns by name, going on, saved states, conditions.
 
+use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use bg_model::bond_graph;
@@ -54,11 +55,14 @@ fn a_run_gives_columns_by_name_that_are_those_of_the_generic_path() {
 fn a_run_goes_on_from_where_it_has_come_to() {
     let model = slide(2.0);
     let all = Simulation::new(&model).every(0.25).until(2.0).run().unwrap();
-    let mut parts = Simulation::new(&model).every(0.25).until(0.9).run().unwrap();
+    let mut parts = Simulation::new(&model).with_peaks().every(0.25).until(0.9).run().unwrap();
     let steps = parts.statistics.steps;
     parts.continue_until(&model, 2.0).unwrap();
     assert_eq!(parts.times, [0.0, 0.25, 0.5, 0.75, 0.9, 1.0, 1.25, 1.5, 1.75, 2.0]);
     assert!((parts["x"][9] - all["x"][8]).abs() < 1e-8);
+    // The speed is largest after three quarters of a turn, when it has gone on.
+    let fastest = parts.peaks("v").expect("they were asked for").largest;
+    assert!((fastest.value - 0.5).abs() < 1e-8 && (fastest.t - 0.3 * PI).abs() < 1e-4, "{fastest:?}");
     assert!(parts.statistics.steps > steps && parts.request.t_end == 2.0);
     // Another mass: the momentum stays, so the velocity is another.
     let mut changed = Simulation::new(&model).every(0.25).until(0.25).run().unwrap();

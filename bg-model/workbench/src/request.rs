@@ -84,8 +84,8 @@ pub enum RequestFault {
 }
 
 impl Integration {
-    /// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file, and every `finest` (s) where that
-    /// is given.
+    /// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file; where `finest` (s) is given, also
+    /// at that interval, and the peaks of the outputs.
     ///
     /// # Errors
     /// The first number that cannot be.
@@ -117,12 +117,14 @@ impl Integration {
         }
         let fixed_step = above_zero("fixed_step", self.fixed_step)?;
         let mut times = sample_times(t0, step, t_end);
+        let peaks = finest.is_some();
         let finest = finest.map(|finest| finest.max((t_end - t0) / MOST_FINE));
         times.extend(finest.into_iter().flat_map(|finest| sample_times(t0, finest, t_end)));
         times.sort_unstable_by(f64::total_cmp);
         times.dedup();
         let step_limit = (STEPS_PER_SECOND * t_end.max(1.0)) as u64;
         let samples = Samples::At(times);
-        Ok(Request { method: self.method, fixed_step, t_end, rtol, atol, samples, step_limit, ..Request::default() })
+        let method = self.method;
+        Ok(Request { method, fixed_step, t_end, rtol, atol, samples, peaks, step_limit, ..Request::default() })
     }
 }

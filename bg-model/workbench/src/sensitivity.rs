@@ -17,7 +17,7 @@ pub enum Measure {
     At(f64),
     /// Its last value.
     Final,
-    /// Its value of largest magnitude.
+    /// Its value of largest magnitude at a sample: the run has one at each peak.
     Largest,
     /// Its mean over time.
     Mean,
@@ -240,12 +240,13 @@ pub fn courses(found: &Sensitivities, question: &Question) -> Vec<Course> {
     question.outputs.iter().flat_map(|output| directions.clone().map(move |of| course(output, of))).collect()
 }
 
-/// Courses at `times` (s) as CSV.
+/// Courses at `times` (s) as CSV, with those of the times that are among `rows` (s, ascending).
 #[must_use]
-pub fn courses_csv(times: &[f64], courses: &[Course]) -> String {
+pub fn courses_csv(times: &[f64], rows: &[f64], courses: &[Course]) -> String {
     let names: Vec<&str> = courses.iter().map(|course| course.name.as_str()).collect();
     let mut text = format!("t,{}\n", names.join(","));
-    for (k, t) in times.iter().enumerate() {
+    let is_row = |t: f64| rows.binary_search_by(|row| row.total_cmp(&t)).is_ok();
+    for (k, t) in times.iter().enumerate().filter(|(_, t)| is_row(**t)) {
         text += &format!("{t:?}");
         for course in courses {
             text += &format!(",{:?}", course.values[k]);

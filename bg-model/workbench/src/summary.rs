@@ -106,7 +106,7 @@ pub struct Summary {
     pub uncontrolled: Vec<&'static str>,
     /// Switchings of the stroke.
     pub events: u64,
-    /// The longest time between two samples, s: ranges and peaks are those of samples.
+    /// The longest time between two samples, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sample_step_s: Option<f64>,
     /// Time on the wall clock, s; zero where there is none.
@@ -260,7 +260,7 @@ impl Summary {
             lines.push(("wall time", wall));
         }
         if let Some(step) = self.sample_step_s {
-            let text = format!("at most {} s apart; ranges and peaks are those of samples", short(step));
+            let text = format!("at most {} s apart; ranges are those of the solution between them, too", short(step));
             lines.push(("samples", text));
         }
         lines.extend(self.lines.iter().map(|(name, text)| (name.as_str(), text.clone())));

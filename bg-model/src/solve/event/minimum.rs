@@ -6,7 +6,7 @@
 //! localmin).
 
 /// The lowest point of `f` between `low` and `high`, and its value; the first one whose value is below `enough`.
-pub(super) fn minimum(mut low: f64, mut high: f64, enough: f64, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
+pub(crate) fn minimum(mut low: f64, mut high: f64, enough: f64, mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
     /// (3 - sqrt 5) / 2.
     const GOLDEN: f64 = 0.381_966_011_250_105_1;
     /// Of an argument of size 1.

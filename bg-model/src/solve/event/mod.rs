@@ -29,6 +29,7 @@ pub(crate) use impact::Struck;
 pub(crate) use lanes::{Readings, Steps};
 #[cfg(feature = "std")]
 pub(crate) use locate::{Found, Shortening};
+pub(crate) use minimum::minimum;
 
 use crate::solve::integrator::{Point, first_not_finite};
 

@@ -45,9 +45,7 @@ pub use explicit::{
 pub(crate) use explicit::{Transposed, both};
 pub use flow::Flow;
 pub use gauss::Gauss6;
-#[cfg(feature = "std")]
-pub(crate) use hermite::between;
-pub(crate) use hermite::hermite;
+pub(crate) use hermite::{between, hermite};
 #[cfg(feature = "std")]
 pub(crate) use lanes::{AnyInLanes, OfOne, Side};
 pub use nystrom::Nystrom;

@@ -9,7 +9,7 @@ use std::rc::Rc;
 use thiserror::Error;
 
 use super::clock::Clock;
-use super::{Made, Reason, Request, RunError, Simulation, Trajectory, observer};
+use super::{Made, Reason, Request, RunError, Simulation, Trajectory, observer, recorded};
 use crate::model::dynamics::{Abreast, Machine};
 use crate::model::mechanism::Accompanied;
 use crate::model::parameters::ParameterError;
@@ -108,13 +108,13 @@ impl Many<'_> {
         let jobs = own.iter_mut().zip(self.values).enumerate().filter_map(|(number, (own, values))| {
             let Own { model, start, method } = own.as_mut()?;
             let model = &**model;
-            let observer = observer(model, &self.request.parts, Box::new(|_| ControlFlow::Continue(())), None);
+            let observer = observer(model, self.request, Box::new(|_| ControlFlow::Continue(())), None);
             Some(lanes::Job { number, model, values, method, start, observer })
         });
         let mut finished: Vec<_> = self.values.iter().map(|_| None).collect();
         let pack = |values: &[Lanes<V>]| lifted(values).expect("models were made of these parameters");
-        lanes::integrate(jobs, together, pack, span, &settings, sizes, &mut |number, (recorder, _), finish| {
-            finished[number] = finish.map(|finish| (recorder, finish));
+        lanes::integrate(jobs, together, pack, span, &settings, sizes, &mut |number, observers, finish| {
+            finished[number] = finish.map(|finish| (recorded(observers), finish));
         });
         let method = method.name();
         let wall = clock.elapsed() / u32::try_from(self.values.len().max(1)).unwrap_or(u32::MAX);

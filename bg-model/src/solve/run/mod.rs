@@ -38,8 +38,8 @@ use crate::model::standing::{CLOSE, Standing};
 use crate::solve::event::Condition;
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
-use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Point, Reason, Scale};
-use crate::solve::simulation::{Beginning, Observer, Part, Recorder, Samples, Span, Switching, make, raise};
+use crate::solve::integrator::{AnyMethod, Change, Integrator, Method, Reason};
+use crate::solve::simulation::{Beginning, Observer, Part, PeakMonitor, Recorder, Samples, Span, make, raise};
 use crate::solve::statistics::Statistics;
 
 /// A run to be made.
@@ -144,6 +144,13 @@ impl<'a> Simulation<'a> {
         self
     }
 
+    /// Looks for the least and the largest value of each output between the samples as well
+    /// ([`Recording::peaks`](crate::simulation::Recording::peaks)).
+    pub fn with_peaks(mut self) -> Self {
+        self.request.peaks = true;
+        self
+    }
+
     /// The end of the run, s.
     pub fn until(mut self, t_end: f64) -> Self {
         self.request.t_end = t_end;
@@ -240,7 +247,7 @@ impl Integration<'_> {
         let mut method: AnyMethod = request.method.method(request.fixed_step);
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
-        let mut observer = observer(model, &request.parts, each_step, another);
+        let mut observer = observer(model, &request, each_step, another);
         observer.0.largest.copy_from_slice(beginning.largest.as_slice());
         let span = Span { t0, t_end: request.t_end };
         let mut ending = ending.map(|ending| of_state(model, ending));
@@ -254,20 +261,30 @@ impl Integration<'_> {
         // What begins may depend on the tolerances.
         let begins = changes.first().is_some_and(|change| change.reason == Reason::First);
         let methods = Some(first).filter(|_| !begins).into_iter().chain(changes.iter().copied()).collect();
-        Made { finish, cause, methods, wall: clock.elapsed() }.concluded(model, observer.0, request)
+        Made { finish, cause, methods, wall: clock.elapsed() }.concluded(model, recorded(observer), request)
     }
 }
 
-/// The observers of a run: what records it, what hands its steps on, another one.
-type Observers<'a, 'b, 'c> = (Recorder<'a>, (Told<'b>, Another<'c>));
+/// The observers of a run: what records it, what hands its steps on, another one, what finds its peaks where these are
+/// asked for.
+type Observers<'a, 'b, 'c> = (Recorder<'a>, (Told<'b>, (Option<&'c mut dyn Observer>, Option<PeakMonitor<'a>>)));
 
 fn observer<'a, 'b, 'c>(
     model: &'a dyn Machine,
-    parts: &[Part],
+    request: &Request,
     each_step: EachStep<'b>,
     another: Option<&'c mut dyn Observer>,
 ) -> Observers<'a, 'b, 'c> {
-    (Recorder::new(model, parts), (Told { each_step, is_done: false }, Another(another)))
+    let peaks = request.peaks.then(|| PeakMonitor::new(model, request.settled));
+    (Recorder::new(model, &request.parts), (Told { each_step, is_done: false }, (another, peaks)))
+}
+
+/// What was recorded, with the peaks that were found.
+fn recorded<'a>((mut recorder, (_, (_, peaks))): Observers<'a, '_, '_>) -> Recorder<'a> {
+    if let Some(peaks) = peaks {
+        recorder.keep(&peaks);
+    }
+    recorder
 }
 
 /// A run that has been made.
@@ -340,39 +357,6 @@ fn last(model: &dyn Machine, Finish { t, x, negative, .. }: &Finish, mut largest
         x = closer;
     }
     State::new(model.description(), *t, &x, &largest, Some(negative))
-}
-
-/// Another observer, where there is one.
-struct Another<'a>(Option<&'a mut dyn Observer>);
-
-impl Observer for Another<'_> {
-    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
-        if let Some(another) = &mut self.0 {
-            another.sample(t, x, negative);
-        }
-    }
-
-    fn measured(&mut self, scale: &Scale) {
-        if let Some(another) = &mut self.0 {
-            another.measured(scale);
-        }
-    }
-
-    fn passed(&mut self, start: &Point, end: &Point, negative: &[bool]) {
-        if let Some(another) = &mut self.0 {
-            another.passed(start, end, negative);
-        }
-    }
-
-    fn switched(&mut self, switching: &Switching) {
-        if let Some(another) = &mut self.0 {
-            another.switched(switching);
-        }
-    }
-
-    fn is_done(&self) -> bool {
-        self.0.as_ref().is_some_and(|another| another.is_done())
-    }
 }
 
 /// Hands each step on.

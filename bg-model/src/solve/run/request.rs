@@ -22,6 +22,14 @@ pub struct Request {
     pub samples: Samples,
     /// What is recorded at each.
     pub parts: Vec<Part>,
+    /// Whether the peaks of the outputs are looked for between the samples ([`Column::peaks`]): some evaluations of the
+    /// outputs in each step more.
+    ///
+    /// [`Column::peaks`]: crate::simulation::Column::peaks
+    pub peaks: bool,
+    /// The instant, s, from which on they are looked for once more, where a start does not count
+    /// ([`Column::settled`](crate::simulation::Column::settled)).
+    pub settled: Option<f64>,
     /// The number of attempted steps, rejected ones included, after which the run gives up.
     pub step_limit: u64,
 }
@@ -37,6 +45,8 @@ impl Default for Request {
             atol: None,
             samples: Samples::Steps,
             parts: vec![Part::Outputs],
+            peaks: false,
+            settled: None,
             step_limit: Settings::default().step_limit,
         }
     }

@@ -103,6 +103,13 @@ impl Trajectory {
         for (index, &t) in more.times.iter().enumerate().filter(|(_, t)| is_new(**t)) {
             self.recording.push(t, more.row(index));
         }
+        for (column, more) in self.recording.columns.iter_mut().zip(&more.recording.columns) {
+            column.peaks = column.peaks.zip(more.peaks).map(|(known, more)| known.and(more));
+            column.settled = match (column.settled, more.settled) {
+                (Some(known), Some(more)) => Some(known.and(more)),
+                (known, more) => known.or(more),
+            };
+        }
         self.recording.events.extend(&more.recording.events);
         let known = self.methods.last().map(|change| change.method);
         let is_new = |(index, change): &(usize, &Change)| *index > 0 || Some(change.method) != known;

@@ -9,6 +9,7 @@ mod cause;
 pub(crate) mod lanes;
 mod observer;
 mod ongoing;
+mod peaks;
 mod recording;
 mod rounding;
 mod run;
@@ -22,8 +23,9 @@ use alloc::vec::Vec;
 
 use nalgebra::{DVector, SVector};
 
-pub use observer::{EachSample, EachStep, Observer, Switching};
+pub use observer::{EachSample, EachStep, Inside, Observer, Switching};
 pub use ongoing::Ongoing;
+pub use peaks::{Peak, PeakMonitor, Peaks};
 pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 #[cfg(feature = "std")]

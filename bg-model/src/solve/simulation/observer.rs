@@ -2,8 +2,9 @@
 
 use alloc::vec::Vec;
 
-use crate::solve::integrator::{Point, Scale};
+use crate::solve::integrator::{Point, Scale, hermite};
 use crate::solve::statistics::Statistics;
+use crate::solve::stepper::Stepper;
 
 /// What happens at one instant: switches change their branches, something hits a stop.
 #[derive(Clone, Debug)]
@@ -24,6 +25,78 @@ pub struct Switching {
     pub jumps: bool,
 }
 
+/// A step that was accepted, with the states inside of it. A part `theta` of it is between 0, its start, and 1, its end.
+pub struct Inside<'s, 'a> {
+    stepper: &'s mut Stepper<'a>,
+    projections: usize,
+}
+
+impl<'s, 'a> Inside<'s, 'a> {
+    /// The step that was made last; states inside are projected so many times at most.
+    pub(super) const fn of(stepper: &'s mut Stepper<'a>, projections: usize) -> Self {
+        Self { stepper, projections }
+    }
+
+    /// Its size, s.
+    #[must_use]
+    pub fn h(&self) -> f64 {
+        self.stepper.h
+    }
+
+    /// The time at the part `theta`, s.
+    #[must_use]
+    pub fn time(&self, theta: f64) -> f64 {
+        if theta == 1.0 { self.stepper.end.t } else { self.stepper.start.t + theta * self.stepper.h }
+    }
+
+    /// The part at which the time is `t` (s): below 0 before the step, above 1 after it.
+    #[must_use]
+    pub fn part_at(&self, t: f64) -> f64 {
+        (t - self.stepper.start.t) / self.stepper.h
+    }
+
+    /// The branches that hold during the step.
+    #[must_use]
+    pub fn negative(&self) -> &[bool] {
+        &self.stepper.negative
+    }
+
+    /// The order of the method that has made it; none where steps are fixed.
+    #[must_use]
+    pub fn order(&self) -> Option<f64> {
+        self.stepper.method.control().order()
+    }
+
+    /// Writes the state at the part `theta` into `x`, as exact as a sample is; gives the time, s.
+    pub fn state(&mut self, theta: f64, x: &mut [f64]) -> f64 {
+        let t = self.time(theta);
+        match theta {
+            0.0 => x.copy_from_slice(self.stepper.start.x.as_slice()),
+            1.0 => x.copy_from_slice(self.stepper.end.x.as_slice()),
+            _ => self.stepper.projected_sample(theta, t, self.projections, x),
+        }
+        t
+    }
+
+    /// The same by the cubic through states and rates at both ends, with an error of order h^4: without evaluations.
+    pub fn cubic(&self, theta: f64, x: &mut [f64]) -> f64 {
+        let Stepper { start, end, h, .. } = &*self.stepper;
+        hermite(start.borrowed(), *h, end.borrowed(), theta, x);
+        self.time(theta)
+    }
+
+    /// Writes the state that the rate at the start or at the end leads to over the part `beside` of the step, back
+    /// where that is negative, into `x`; gives the time, s.
+    pub fn along_rate(&self, is_at_end: bool, beside: f64, x: &mut [f64]) -> f64 {
+        let Point { t, x: from, rate } = if is_at_end { &self.stepper.end } else { &self.stepper.start };
+        let h = beside * self.stepper.h;
+        for (x, (from, rate)) in x.iter_mut().zip(from.iter().zip(rate.iter())) {
+            *x = from + h * rate;
+        }
+        t + h
+    }
+}
+
 /// Is told what a run gives, in the order of time. Every method does nothing by default.
 pub trait Observer {
     /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there. At the instant of an
@@ -37,6 +110,15 @@ pub trait Observer {
     /// A step was accepted, from `start` to `end` in the branches `negative`: told before the samples in it and before
     /// what happens at its end. The rates at both ends are those of these branches.
     fn passed(&mut self, _start: &Point, _end: &Point, _negative: &[bool]) {}
+
+    /// Whether it is told of each step with the states inside of it.
+    fn looks_inside(&self) -> bool {
+        false
+    }
+
+    /// The same step as told by [`Observer::passed`], with the states inside, after that and before the samples in it:
+    /// for those who look inside.
+    fn inside(&mut self, _step: &mut Inside<'_, '_>) {}
 
     /// Branches have changed, or the state has jumped, at the end of the last step: told before the events of the
     /// switches.
@@ -75,6 +157,15 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.1.passed(start, end, negative);
     }
 
+    fn looks_inside(&self) -> bool {
+        self.0.looks_inside() || self.1.looks_inside()
+    }
+
+    fn inside(&mut self, step: &mut Inside<'_, '_>) {
+        self.0.inside(step);
+        self.1.inside(step);
+    }
+
     fn switched(&mut self, switching: &Switching) {
         self.0.switched(switching);
         self.1.switched(switching);
@@ -92,6 +183,98 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
 
     fn is_done(&self) -> bool {
         self.0.is_done() || self.1.is_done()
+    }
+}
+
+/// An observer, where there is one.
+impl<O: Observer> Observer for Option<O> {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
+        if let Some(observer) = self {
+            observer.sample(t, x, negative);
+        }
+    }
+
+    fn measured(&mut self, scale: &Scale) {
+        if let Some(observer) = self {
+            observer.measured(scale);
+        }
+    }
+
+    fn passed(&mut self, start: &Point, end: &Point, negative: &[bool]) {
+        if let Some(observer) = self {
+            observer.passed(start, end, negative);
+        }
+    }
+
+    fn looks_inside(&self) -> bool {
+        self.as_ref().is_some_and(O::looks_inside)
+    }
+
+    fn inside(&mut self, step: &mut Inside<'_, '_>) {
+        if let Some(observer) = self {
+            observer.inside(step);
+        }
+    }
+
+    fn switched(&mut self, switching: &Switching) {
+        if let Some(observer) = self {
+            observer.switched(switching);
+        }
+    }
+
+    fn event(&mut self, t: f64, x: &[f64], switch: usize, negative: &[bool]) {
+        if let Some(observer) = self {
+            observer.event(t, x, switch, negative);
+        }
+    }
+
+    fn step(&mut self, t: f64, t_end: f64, statistics: &Statistics) {
+        if let Some(observer) = self {
+            observer.step(t, t_end, statistics);
+        }
+    }
+
+    fn is_done(&self) -> bool {
+        self.as_ref().is_some_and(O::is_done)
+    }
+}
+
+/// The observer behind it is told.
+impl<O: Observer + ?Sized> Observer for &mut O {
+    fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
+        (**self).sample(t, x, negative);
+    }
+
+    fn measured(&mut self, scale: &Scale) {
+        (**self).measured(scale);
+    }
+
+    fn passed(&mut self, start: &Point, end: &Point, negative: &[bool]) {
+        (**self).passed(start, end, negative);
+    }
+
+    fn looks_inside(&self) -> bool {
+        (**self).looks_inside()
+    }
+
+    fn inside(&mut self, step: &mut Inside<'_, '_>) {
+        (**self).inside(step);
+    }
+
+    fn switched(&mut self, switching: &Switching) {
+        (**self).switched(switching);
+    }
+
+    fn event(&mut self, t: f64, x: &[f64], switch: usize, negative: &[bool]) {
+        (**self).event(t, x, switch, negative);
+    }
+
+    fn step(&mut self, t: f64, t_end: f64, statistics: &Statistics) {
+        (**self).step(t, t_end, statistics);
+    }
+
+    fn is_done(&self) -> bool {
+        (**self).is_done()
     }
 }
 

@@ -11,7 +11,9 @@ use alloc::vec::Vec;
 
 use thiserror::Error;
 
-use super::{Observer, raise};
+#[cfg(feature = "std")]
+use super::PeakMonitor;
+use super::{Observer, Peaks, raise};
 use crate::model::description::Description;
 use crate::model::dynamics::Machine;
 use crate::model::system::Powers;
@@ -41,6 +43,10 @@ pub struct Column {
     pub unit: String,
     /// Its values, one for each sample.
     pub values: Vec<f64>,
+    /// Its least and its largest value over the whole run, between samples as well; none where that was not asked for.
+    pub peaks: Option<Peaks>,
+    /// The same from an instant on that was given; none where none was, or where the run has not come there.
+    pub settled: Option<Peaks>,
 }
 
 /// The samples of a run.
@@ -65,7 +71,7 @@ impl Column {
     /// A column without values.
     #[must_use]
     pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self { name: name.into(), unit: unit.into(), values: Vec::new() }
+        Self { name: name.into(), unit: unit.into(), values: Vec::new(), peaks: None, settled: None }
     }
 }
 
@@ -89,6 +95,12 @@ impl Recording {
     /// [`MissingColumn`].
     pub fn values(&self, name: &str) -> Result<&[f64], MissingColumn> {
         self.column(name).ok_or_else(|| MissingColumn(name.to_owned()))
+    }
+
+    /// The peaks of the column called `name`; none where there is no such column, or where they were not asked for.
+    #[must_use]
+    pub fn peaks(&self, name: &str) -> Option<Peaks> {
+        self.columns.iter().find(|column| column.name == name)?.peaks
     }
 
     /// Whether there is a column called `name`.
@@ -153,6 +165,23 @@ impl<'a> Recorder<'a> {
         let columns = parts.iter().flat_map(|part| part.columns(model.description())).collect();
         let (parts, recording) = (parts.to_vec(), Recording::new(columns));
         Self { model, parts, row: Vec::new(), recording, largest: vec![0.0; model.states()], fault: None }
+    }
+
+    /// Takes over the peaks of the outputs, as far as these are recorded.
+    #[cfg(feature = "std")]
+    pub(crate) fn keep(&mut self, found: &PeakMonitor<'_>) {
+        let mut columns = self.recording.columns.iter_mut();
+        for part in &self.parts {
+            let count = part.columns(self.model.description()).len();
+            let of_part = columns.by_ref().take(count);
+            if *part == Part::Outputs {
+                let settled = found.settled().iter().copied().chain(core::iter::repeat(None));
+                let found = found.peaks().iter().copied().zip(settled);
+                of_part.zip(found).for_each(|(column, found)| (column.peaks, column.settled) = found);
+            } else {
+                of_part.for_each(drop);
+            }
+        }
     }
 
     /// The model.

@@ -6,7 +6,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
-use super::observer::{Observer, Switching};
+use super::observer::{Inside, Observer, Switching};
 use super::rounding::RoundingMonitor;
 use super::sampling::Sampling;
 use super::settings::{Settings, Span};
@@ -21,11 +21,8 @@ use crate::solve::event::{Crossing, EventMonitor, Located, Stop, Struck};
 use crate::solve::failure::Cause;
 use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{Point, StepControl, is_finite};
-use crate::solve::stepper::Stepper;
+use crate::solve::stepper::{MOVED, Stepper};
 
-/// The norm of a projection above which it is looked at more closely. It is below 2 where a step errs by as much as is
-/// allowed.
-pub(super) const MOVED: f64 = 10.0;
 /// How often a sample is projected at most.
 const PROJECTIONS: usize = 6;
 /// How much less another projection moves, at most, where the first one has led to the motion's own branch: about the
@@ -341,6 +338,10 @@ impl<'a> Run<'a> {
         self.sampling.next_step();
         let t = self.stepper.end.t;
         observer.passed(&self.stepper.start, &self.stepper.end, &self.stepper.negative);
+        if observer.looks_inside() {
+            let projections = self.projections();
+            observer.inside(&mut Inside::of(&mut self.stepper, projections));
+        }
         self.sample(observer, t);
         self.stepper.advance();
         observer.step(t, self.span.t_end, &self.stepper.statistics);
@@ -360,13 +361,16 @@ impl<'a> Run<'a> {
                 continue;
             }
             let part = (instant - self.stepper.start.t) / self.stepper.h;
+            let most = self.projections();
             let Self { stepper, sample, .. } = self;
-            stepper.sample(part.min(1.0), sample);
-            // The dense output errs more than the step, and most near a singular pose.
-            let most = if self.loops.is_some() { PROJECTIONS } else { 1 };
-            let _ = (0..most).find(|_| stepper.project_state(instant, sample) <= MOVED);
+            stepper.projected_sample(part.min(1.0), instant, most, sample);
             observer.sample(instant, sample, &stepper.negative);
         }
+    }
+
+    /// How often a state inside of a step is projected at most.
+    fn projections(&self) -> usize {
+        if self.loops.is_some() { PROJECTIONS } else { 1 }
     }
 
     /// The run is to end at `t` (s).

@@ -10,6 +10,9 @@ use crate::model::origin::Origin;
 use crate::solve::integrator::{Flow, Method, Point, PointRef, Scale, first_not_finite, is_finite};
 use crate::solve::statistics::Statistics;
 
+/// The norm of a projection above which it is looked at more closely. It is below 2 where a step errs by as much as is
+/// allowed.
+pub(crate) const MOVED: f64 = 10.0;
 /// How far a projection may move a state, in its unit or in parts of it, for the next one, whose change is the square,
 /// to be lost in rounding.
 const SETTLED: f64 = 1e-8;
@@ -242,6 +245,13 @@ impl<'a> Stepper<'a> {
             self.samples_are_ready = true;
         }
         self.method.sample(self.start.borrowed(), self.h, self.end.borrowed(), theta, x);
+    }
+
+    /// The same at time `t` (s), projected so many times at most. The dense output errs more than the step, and most near
+    /// a singular pose.
+    pub fn projected_sample(&mut self, theta: f64, t: f64, most: usize, x: &mut [f64]) {
+        self.sample(theta, x);
+        let _ = (0..most).find(|_| self.project_state(t, x) <= MOVED);
     }
 
     fn prepare_dense(&mut self) {

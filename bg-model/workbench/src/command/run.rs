@@ -39,7 +39,7 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     };
     let t0 = begin.time();
     let finest = program.extras.finest(integration.t_end);
-    let request = request(integration, t0, Some(finest))?;
+    let request = Request { settled: program.extras.settled(), ..request(integration, t0, Some(finest))? };
     arguments.save_state.iter().try_for_each(|path| whole::probe(path))?;
     let scene = program.scene_called(&model.scene);
     let figures = (!arguments.no_figures).then(|| program.extras.figures(scene.description)).flatten();

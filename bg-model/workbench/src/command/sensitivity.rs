@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use bg_model::description::{OutputInfo, ParameterInfo};
 use bg_model::run::{Request, Trajectory};
 use bg_model::sensitivity::Sensitivities;
-use bg_model::simulation::Samples;
+use bg_model::simulation::{Peaks, Samples};
 use clap::Args;
 
 use super::arguments::{IntegrationArguments, ModelArguments};
@@ -18,6 +18,7 @@ use crate::figures::FigureError;
 use crate::figures::influence::influence;
 use crate::files::{FileError, RunFolder, console};
 use crate::inputs;
+use crate::machine::Machine;
 use crate::output::OutputError;
 use crate::parameters::{Chosen, nearest};
 use crate::scenes::Scene;
@@ -77,7 +78,9 @@ pub fn sensitivity(program: &Program, arguments: &SensitivityArguments) -> Resul
     let request = with_times(request(&arguments.integration, 0.0, None)?, at);
     let names = [TABLE, CSV, COURSES, FIGURE].map(str::to_owned);
     let folder = RunFolder::claim(&arguments.out, &names)?;
-    let found = differentiated(program, scene, &chosen, &request, &parameters)?;
+    let machine = machine(program, scene, &chosen)?;
+    let peaks = instants_of_peaks(&*machine, &request)?;
+    let found = differentiated(&*machine, &with_times(request.clone(), &peaks), &parameters)?;
     let mut measures = Measure::ALL.to_vec();
     measures.extend(at.iter().map(|&t| Measure::At(t)));
     let question = Question { outputs: &outputs, parameters: &parameters, measures: &measures };
@@ -85,7 +88,7 @@ pub fn sensitivity(program: &Program, arguments: &SensitivityArguments) -> Resul
     let inputs = inputs::text(&named, [0.0, found.trajectory.last.t]);
     let told = format!("{}{inputs}", told(&found, &all, &question, arguments.most));
     let table = format!("{}{inputs}", text(&all, question.parameters.len()));
-    let (written, faults) = write(folder, &scene.name, &found, (&all, &table), &question);
+    let (written, faults) = write(folder, &scene.name, (&found, &request), (&all, &table), &question);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
     let printed = console::print(&format!("{told}\nwritten: {written}\n"));
@@ -167,6 +170,11 @@ fn with_times(mut request: Request, at: &[f64]) -> Request {
     request
 }
 
+/// The instants of the samples that were asked for, s.
+fn rows(request: &Request) -> &[f64] {
+    if let Samples::At(times) = &request.samples { times } else { &[] }
+}
+
 /// A run of a scene and the derivatives over it of outputs by parameters, given `by` and `of` their names; or the
 /// sentence why there are none.
 pub fn derivatives(
@@ -178,22 +186,30 @@ pub fn derivatives(
 ) -> Result<(Trajectory, Vec<Course>), String> {
     let found = adjustable(scene, chosen, by, "by").and_then(|parameters| {
         let outputs = observed(scene, of, "outputs")?;
-        let found = differentiated(program, scene, chosen, &request, &parameters)?;
+        let machine = machine(program, scene, chosen)?;
+        let found = differentiated(&*machine, &request, &parameters)?;
         let courses = courses(&found, &Question { outputs: &outputs, parameters: &parameters, measures: &[] });
         Ok((found.trajectory, courses))
     });
     found.map_err(|fault| fault.to_string())
 }
 
-/// A run of a scene with its derivatives by these parameters.
+/// When the outputs of a run are least and largest, s.
+fn instants_of_peaks(machine: &dyn Machine, request: &Request) -> Result<Vec<f64>, InputError> {
+    let without_samples = Request { peaks: true, samples: Samples::At(Vec::new()), ..request.clone() };
+    let run = machine.run(without_samples, None, &mut |_| ())?;
+    let peaks = run.columns.iter().filter_map(|column| column.peaks);
+    // At the instant of an event a sample is the side before it.
+    let both_sides = |t: f64| [t, t.next_up()].into_iter().filter(|t| *t <= request.t_end);
+    Ok(peaks.flat_map(|Peaks { least, largest }| [least.t, largest.t]).flat_map(both_sides).collect())
+}
+
+/// A run with its derivatives by these parameters.
 fn differentiated(
-    program: &Program,
-    scene: &Scene,
-    chosen: &Chosen,
+    machine: &dyn Machine,
     request: &Request,
     parameters: &[(&'static ParameterInfo, f64)],
 ) -> Result<Sensitivities, InputError> {
-    let machine = machine(program, scene, chosen)?;
     let by: Vec<&str> = parameters.iter().map(|(info, _)| info.name).collect();
     Ok(machine.known("derivatives by parameters", machine.sensitivities(request, &by))??)
 }
@@ -207,8 +223,9 @@ fn told(found: &Sensitivities, all: &[Influence], question: &Question, most: usi
         format!("\nno influence on these outputs: {}\n", still.join(", "))
     };
     let (t, events) = (found.trajectory.last.t, found.trajectory.statistics.events);
-    let samples = longest_step(&found.trajectory.times)
-        .map_or_else(String::new, |step| format!("measures are those of samples at most {} s apart\n", short(step)));
+    let samples = longest_step(&found.trajectory.times).map_or_else(String::new, |step| {
+        format!("mean, rms and course are those of samples at most {} s apart\n", short(step))
+    });
     format!(
         "derivatives of {} outputs by {} parameters over {t} s, {events} events\n{samples}\n{}{still}",
         question.outputs.len(),
@@ -221,7 +238,7 @@ fn told(found: &Sensitivities, all: &[Influence], question: &Question, most: usi
 fn write(
     mut folder: RunFolder,
     scene: &str,
-    found: &Sensitivities,
+    (found, request): (&Sensitivities, &Request),
     (all, table): (&[Influence], &str),
     question: &Question,
 ) -> (Option<usize>, Vec<OutputError>) {
@@ -229,7 +246,7 @@ fn write(
     let mut fill = || -> Result<(), FileError> {
         folder.write_text(TABLE, table)?;
         folder.write_text(CSV, &csv(all))?;
-        folder.write_text(COURSES, &courses_csv(&found.trajectory.times, &courses(found, question)))?;
+        folder.write_text(COURSES, &courses_csv(&found.trajectory.times, rows(request), &courses(found, question)))?;
         match influence(&format!("{scene}: change of each course for a change of the parameter by its size"), all) {
             Ok(svg) => folder.write_text(FIGURE, &svg)?,
             Err(FigureError::Empty) => {}

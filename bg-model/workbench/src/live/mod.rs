@@ -169,6 +169,7 @@ fn made<'a>(program: &'a Program, order: &Order) -> Result<Made<'a>, Refusal> {
     let Integration { t_end, step, .. } = order.integration;
     let t0 = order.begin.time();
     let mut request = order.integration.request(t0, Some(program.extras.finest(t_end)))?;
+    request.settled = program.extras.settled();
     request.parts.push(Part::Shown);
     let from = order.begin.state(&*machine)?;
     let mut outcome = follow(&*machine, request, from.as_ref(), |_| ())?;

@@ -246,6 +246,7 @@ impl<'a> Plan<'a> {
         let mut request = request.map_err(|fault| PlanError::Request { plan: plan.to_owned(), fault })?;
         request.step_limit = file.step_limit.unwrap_or(request.step_limit);
         let wanted = wanted(&file, scene.description).map_err(other)?;
+        request.peaks = wanted.has_peaks();
         check_names(&design, &wanted, scene.description).map_err(other)?;
         let rows = 1 + (integration.t_end / integration.step) as usize;
         let numbers = rows * wanted.trajectories.len();

@@ -1,20 +1,22 @@
 //! What is kept of each run: numbers made of its outputs, times of its events, whole trajectories.
 //!
-//! In: a run's samples. Out: a number for each column. Means and integrals are those of straight lines between the
-//! samples (trapezoidal rule); largest and least are those of the samples. Where that is not exact enough, the model
+//! In: a run. Out: a number for each column. Largest and least are those of the solution, whatever the samples. Means and
+//! integrals are those of straight lines between the samples (trapezoidal rule); where that is not exact enough, the model
 //! can observe an `integral(..)`, or samples can be finer.
 
 use bg_model::description::Description;
-use bg_model::simulation::Recording;
+use bg_model::simulation::{Column, Recording};
 use serde::{Deserialize, Serialize};
+
+use crate::extras::peaks;
 
 /// A number made of an output.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Reduction {
-    /// Its largest sample.
+    /// Its largest value.
     Max,
-    /// Its least sample.
+    /// Its least value.
     Min,
     /// Its mean over time.
     Mean,
@@ -40,11 +42,11 @@ impl Reduction {
         }
     }
 
-    fn of(self, times: &[f64], values: &[f64]) -> f64 {
-        let fold = |choose: fn(f64, f64) -> f64| values.iter().copied().reduce(choose).unwrap_or(f64::NAN);
+    fn of(self, run: &Recording, column: &Column) -> f64 {
+        let (times, values) = (&run.times[..], &column.values[..]);
         match self {
-            Self::Max => fold(f64::max),
-            Self::Min => fold(f64::min),
+            Self::Max => peaks(run, column).largest.value,
+            Self::Min => peaks(run, column).least.value,
             Self::Final => values.last().copied().unwrap_or(f64::NAN),
             Self::Integral => integral(times, values),
             Self::Mean => match times {
@@ -72,6 +74,12 @@ pub struct Wanted {
 }
 
 impl Wanted {
+    /// Whether a run has to find the peaks of its outputs.
+    #[must_use]
+    pub fn has_peaks(&self) -> bool {
+        self.reductions.iter().any(|(_, reduction)| matches!(reduction, Reduction::Max | Reduction::Min))
+    }
+
     /// Names and units of the columns that a run fills.
     #[must_use]
     pub fn columns(&self, model: &Description) -> Vec<(String, String)> {
@@ -89,7 +97,7 @@ impl Wanted {
     /// The numbers of a run that came to its end; an event that there was not is not a number.
     #[must_use]
     pub fn numbers(&self, run: &Recording) -> Vec<f64> {
-        let reduced = self.reductions.iter().map(|&(output, by)| by.of(&run.times, &run.columns[output].values));
+        let reduced = self.reductions.iter().map(|&(output, by)| by.of(run, &run.columns[output]));
         let events = (0..self.event_times).map(|event| run.events.get(event).copied().unwrap_or(f64::NAN));
         reduced.chain(events).collect()
     }
@@ -97,8 +105,6 @@ impl Wanted {
 
 #[cfg(test)]
 mod tests {
-    use bg_model::simulation::Column;
-
     use super::*;
 
     #[test]

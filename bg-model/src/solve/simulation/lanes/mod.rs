@@ -13,7 +13,7 @@ use core::ops::Range;
 use nalgebra::DVector;
 
 use super::observer::Observer;
-use super::run::{Faulty, MOVED, Run};
+use super::run::{Faulty, Run};
 use super::settings::{self, Settings, Span};
 use super::step_size::{Judgement, Kept};
 use crate::model::dynamics::{Abreast, Machine};
@@ -23,7 +23,7 @@ use crate::solve::finish::{Ended, Finish};
 use crate::solve::integrator::{AnyInLanes, AnyMethod, Method, OfOne, Point, Scale};
 use crate::solve::simulation::Samples;
 use crate::solve::statistics::Statistics;
-use crate::solve::stepper::Stepper;
+use crate::solve::stepper::{MOVED, Stepper};
 use controllers::{Control, Lead};
 use group::{Group, Tried};
 
@@ -170,7 +170,7 @@ impl<'a, O: Observer> Lane<'a, O> {
             until: run.sampling.next().min(run.span.t_end),
             left: run.limit.saturating_sub(run.attempts),
         };
-        let is_plain = run.monitor.is_plain() && run.has_loops_of(group.loops());
+        let is_plain = run.monitor.is_plain() && run.has_loops_of(group.loops()) && !self.observer.looks_inside();
         group.lead(place, lead, is_plain, self.method().frequency());
     }
 
@@ -223,7 +223,7 @@ impl<'a, O: Observer> Lane<'a, O> {
         self.run.controller.accept_by(t, h, judgement);
         self.run.stepper.statistics.rate_evaluations += self.method().rates() + 1;
         // Of a plain step the group alone keeps what the guards are.
-        let is_quiet = !self.run.sampling.is_due(t)
+        let is_quiet = !self.is_looked_at(t)
             && (is_clear && self.run.monitor.is_plain() || {
                 let (end, middle) = group.guards(place);
                 let Run { monitor, stepper, .. } = &mut self.run;
@@ -249,17 +249,23 @@ impl<'a, O: Observer> Lane<'a, O> {
         Outcome::Accepted
     }
 
+    /// Whether a state inside of a step to `t` (s) is asked for, which only the run by itself can give.
+    fn is_looked_at(&self, t: f64) -> bool {
+        self.run.sampling.is_due(t) || self.observer.looks_inside()
+    }
+
     /// Takes an attempt over that satisfies the tolerances, and looks for events in it.
     fn inspected<V: Vector>(&mut self, group: &mut Group<V>, place: usize, Step { h, t, .. }: Step) -> Outcome {
         self.take_start(group, place);
         group.hand_over(place, self.method());
         self.take_end(group, place, t);
+        let is_looked_at = self.is_looked_at(t);
         let run = &mut self.run;
         run.stepper.arrived(h);
         let crossing = match run.monitor.look(&mut run.stepper) {
             Ok(None) => None,
             Ok(Some(Found::AtStart(crossing))) => Some(crossing),
-            Ok(Some(Found::Inside(shortening))) if run.sampling.is_due(t) => {
+            Ok(Some(Found::Inside(shortening))) if is_looked_at => {
                 Some(run.monitor.shorten(&mut run.stepper, shortening))
             }
             Ok(Some(Found::Inside(shortening))) => {

@@ -1,0 +1,328 @@
+//! The least and the largest value of each output over a run, between the samples as well.
+//!
+//! In: the steps of a run, with the states inside of them. Out: for each output two values with their instants, over the
+//! whole run and from an instant on. They depend on the steps alone, not on the samples.
+//!
+//! Method: outputs and their slopes at the ends of each step give a cubic. Where that leads beyond what is known so
+//! far, or where the middle is off the cubic, the step's dense output is searched. A step of a method of higher order
+//! is longer beside what happens in it, and looked at in several parts. At an event both sides count.
+
+use alloc::vec;
+use alloc::vec::Vec;
+
+use super::observer::{Inside, Observer, Switching};
+use crate::model::dynamics::Machine;
+use crate::solve::event::minimum;
+use crate::solve::integrator::between;
+
+/// A value of an output and its instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peak {
+    /// Time, s.
+    pub t: f64,
+    /// The output's value, in its unit.
+    pub value: f64,
+}
+
+/// Where an output is least and where it is largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Peaks {
+    /// The least value.
+    pub least: Peak,
+    /// The largest value.
+    pub largest: Peak,
+}
+
+impl Peaks {
+    /// Those of an output that has one value.
+    const fn of(peak: Peak) -> Self {
+        Self { least: peak, largest: peak }
+    }
+
+    /// Those of values at `times` (s); none of no values.
+    #[must_use]
+    pub fn of_samples(times: &[f64], values: &[f64]) -> Option<Self> {
+        let samples = times.iter().zip(values).map(|(&t, &value)| Self::of(Peak { t, value }));
+        samples.reduce(Self::and)
+    }
+
+    /// Those of this and of a later time.
+    pub(crate) fn and(self, later: Self) -> Self {
+        let Self { mut least, mut largest } = self;
+        if later.least.value < least.value {
+            least = later.least;
+        }
+        if later.largest.value > largest.value {
+            largest = later.largest;
+        }
+        Self { least, largest }
+    }
+
+    /// By how much another value has to be beyond these to count: rounding moves a constant by less.
+    fn margin(&self) -> f64 {
+        const OF_RANGE: f64 = 1e-9;
+        const OF_SIZE: f64 = 1e-6;
+        let [least, largest] = [self.least.value, self.largest.value];
+        OF_RANGE * (largest - least).max(OF_SIZE * least.abs().max(largest.abs()))
+    }
+}
+
+/// Outputs at an instant with their derivatives by time.
+#[derive(Clone, Debug, Default)]
+struct Knot {
+    values: Vec<f64>,
+    slopes: Vec<f64>,
+}
+
+/// Over which time peaks are looked for.
+#[derive(Clone, Debug)]
+struct Window {
+    /// From this instant on, s.
+    from: f64,
+    /// For each output, as far as a step has been made there.
+    found: Vec<Option<Peaks>>,
+}
+
+impl Window {
+    /// Takes values at `t` (s) into account.
+    fn take(&mut self, t: f64, values: &[f64]) {
+        if t < self.from {
+            return;
+        }
+        for (found, &value) in self.found.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
+            let here = Peaks::of(Peak { t, value });
+            *found = Some(found.map_or(here, |known| known.and(here)));
+        }
+    }
+}
+
+fn take(windows: &mut [Window], t: f64, values: &[f64]) {
+    windows.iter_mut().for_each(|window| window.take(t, values));
+}
+
+/// An observer that finds the peaks of a model's outputs. Allocates nothing in a step.
+#[derive(Clone)]
+pub struct PeakMonitor<'a> {
+    model: &'a dyn Machine,
+    windows: Vec<Window>,
+    /// The start and the end of the part that is looked at.
+    from: Knot,
+    to: Knot,
+    middle: Vec<f64>,
+    /// Whether `to` is the start of the next step.
+    is_known: bool,
+    /// Room for a state and for outputs.
+    x: Vec<f64>,
+    row: Vec<f64>,
+}
+
+/// The part of a step from which on and up to which it is looked at.
+type Part = [f64; 2];
+
+/// A step as short beside another one as the argument of a difference of outputs.
+const DIFFERENCE: f64 = 1e-6;
+/// The order up to which a step is one part: an oscillation makes less than half a turn in it where errors are small.
+const ORDER_OF_ONE: f64 = 8.0;
+/// How far the middle may be off the cubic, in parts of the range in the step, for the cubic to be the course.
+const RESOLVED: f64 = 0.02;
+/// In how many pieces a part is searched that the cubic does not show.
+const PIECES: u32 = 8;
+
+impl<'a> PeakMonitor<'a> {
+    /// That of a model: over the whole run, and from `settled` (s) on where that is given.
+    #[must_use]
+    pub fn new(model: &'a dyn Machine, settled: Option<f64>) -> Self {
+        let outputs = model.description().outputs.len();
+        let knot = || Knot { values: vec![0.0; outputs], slopes: vec![0.0; outputs] };
+        let window = |from: f64| Window { from, found: vec![None; outputs] };
+        Self {
+            model,
+            windows: core::iter::once(f64::NEG_INFINITY).chain(settled).map(window).collect(),
+            from: knot(),
+            to: knot(),
+            middle: vec![0.0; outputs],
+            is_known: false,
+            x: vec![0.0; model.states()],
+            row: vec![0.0; outputs],
+        }
+    }
+
+    /// The peaks of each output over the whole run; none of a run that has made no step.
+    #[must_use]
+    pub fn peaks(&self) -> &[Option<Peaks>] {
+        &self.windows[0].found
+    }
+
+    /// The peaks of each output from the instant on that was given; none of a run that has not come there.
+    #[must_use]
+    pub fn settled(&self) -> &[Option<Peaks>] {
+        self.windows.get(1).map_or(&[], |window| &window.found)
+    }
+
+    /// Evaluates outputs and slopes at the part `theta` of a step into `knot`; the slopes by a difference to a part
+    /// before, or after at the start.
+    fn look(model: &dyn Machine, step: &mut Inside<'_, '_>, theta: f64, knot: &mut Knot, x: &mut [f64]) {
+        let beside = if theta > 0.0 { -DIFFERENCE } else { DIFFERENCE };
+        let t = step.state(theta, x);
+        model.outputs(t, x, step.negative(), &mut knot.values);
+        let t = if theta == 0.0 || theta == 1.0 {
+            step.along_rate(theta == 1.0, beside, x)
+        } else {
+            step.state(theta + beside, x)
+        };
+        model.outputs(t, x, step.negative(), &mut knot.slopes);
+        let h = step.h() * beside;
+        knot.slopes.iter_mut().zip(&knot.values).for_each(|(slope, value)| *slope = (*slope - value) / h);
+    }
+
+    /// Looks at a part of a step; its start is known.
+    fn pass(&mut self, step: &mut Inside<'_, '_>, part: Part, is_short: bool) {
+        let Self { model, windows, from, to, middle, x, row, .. } = self;
+        let [low, high] = part;
+        Self::look(*model, step, high, to, x);
+        let half = 0.5 * (low + high);
+        let t_half = if is_short { step.cubic(half, x) } else { step.state(half, x) };
+        model.outputs(t_half, x, step.negative(), middle);
+        take(windows, step.time(high), &to.values);
+        let h = step.h() * (high - low);
+        for place in 0..windows.len() {
+            let opens = step.part_at(windows[place].from);
+            if opens >= high {
+                continue;
+            }
+            if opens > low {
+                step.state(opens, x);
+                let t = windows[place].from;
+                model.outputs(t, x, step.negative(), row);
+                windows[place].take(t, row);
+            }
+            let part = [low.max(opens), high];
+            for index in 0..row.len() {
+                let Some(known) = windows[place].found[index] else { continue };
+                let course = Course {
+                    values: [from.values[index], to.values[index]],
+                    slopes: [from.slopes[index], to.slopes[index]],
+                    middle: middle[index],
+                    h,
+                };
+                let Some([least, largest]) = course.beyond() else { continue };
+                let margin = known.margin();
+                let signs = [(least < known.least.value - margin, 1.0), (largest > known.largest.value + margin, -1.0)];
+                for sign in signs.into_iter().filter_map(|(leads, sign)| leads.then_some(sign)) {
+                    let mut at = |theta: f64| {
+                        let t = step.state(theta, x);
+                        model.outputs(t, x, step.negative(), row);
+                        take(windows, t, row);
+                        sign * row[index]
+                    };
+                    let [low, high] = if course.is_resolved() { part } else { lowest_piece(part, &mut at) };
+                    minimum(low, high, f64::NEG_INFINITY, at);
+                }
+            }
+        }
+    }
+}
+
+/// The neighbourhood of the lowest of some points inside of a part.
+fn lowest_piece([low, high]: Part, at: &mut impl FnMut(f64) -> f64) -> Part {
+    let piece = (high - low) / f64::from(PIECES);
+    let inside = (1..PIECES).map(|k| low + f64::from(k) * piece);
+    let values = inside.map(|theta| (theta, at(theta)));
+    let lowest = values.reduce(|best, other| if other.1 < best.1 { other } else { best });
+    lowest.map_or([low, high], |(theta, _)| [theta - piece, theta + piece])
+}
+
+/// An output over a part of a step, as far as it is known without the states inside.
+struct Course {
+    values: [f64; 2],
+    slopes: [f64; 2],
+    middle: f64,
+    h: f64,
+}
+
+impl Course {
+    /// By how much the middle is off the cubic.
+    fn off(&self) -> f64 {
+        (self.middle - between(self.h, 0.5, self.values, self.slopes)).abs()
+    }
+
+    fn range(&self) -> [f64; 2] {
+        let [a, b] = self.values;
+        [a.min(b).min(self.middle), a.max(b).max(self.middle)]
+    }
+
+    /// Whether the cubic shows the course.
+    fn is_resolved(&self) -> bool {
+        let [least, largest] = self.range();
+        self.off() <= RESOLVED * (largest - least)
+    }
+
+    /// About the least and the largest value inside; none where the course leads from one end to the other.
+    fn beyond(&self) -> Option<[f64; 2]> {
+        let [a, b] = self.values;
+        let turns = self.turns();
+        if turns.iter().all(Option::is_none) && self.is_resolved() {
+            return None;
+        }
+        let off = self.off();
+        let [mut least, mut largest] = self.range();
+        for value in turns.into_iter().flatten() {
+            (least, largest) = (least.min(value), largest.max(value));
+        }
+        // By as much more as the cubic is off, and by a part of what it adds.
+        let more = |added: f64| 2.0 * off + 0.5 * added;
+        let added = [a.min(b) - least, largest - a.max(b)].map(|added| added.max(0.0));
+        Some([least - more(added[0]), largest + more(added[1])])
+    }
+
+    /// The values of the cubic where its slope is zero inside of the part.
+    fn turns(&self) -> [Option<f64>; 2] {
+        let ([a, b], h) = (self.values, self.h);
+        let [first, last] = self.slopes.map(|slope| slope * h);
+        // a + first u + square u^2 + cube u^3.
+        let (square, cube) = (3.0 * (b - a) - 2.0 * first - last, first + last - 2.0 * (b - a));
+        let discriminant = square * square - 3.0 * cube * first;
+        if discriminant < 0.0 || discriminant.is_nan() {
+            return [None; 2];
+        }
+        // Without cancellation: the roots of first + 2 square u + 3 cube u^2.
+        let q = -(square + libm::copysign(libm::sqrt(discriminant), square));
+        [q / (3.0 * cube), first / q].map(|u| {
+            let is_inside = u > 0.0 && u < 1.0;
+            is_inside.then_some(a + u * (first + u * (square + u * cube)))
+        })
+    }
+}
+
+impl Observer for PeakMonitor<'_> {
+    fn looks_inside(&self) -> bool {
+        true
+    }
+
+    fn inside(&mut self, step: &mut Inside<'_, '_>) {
+        if self.is_known {
+            core::mem::swap(&mut self.from, &mut self.to);
+        } else {
+            Self::look(self.model, step, 0.0, &mut self.from, &mut self.x);
+            take(&mut self.windows, step.time(0.0), &self.from.values);
+        }
+        self.is_known = true;
+        let parts = step.order().map_or(1.0, |order| libm::ceil(order / ORDER_OF_ONE).max(1.0));
+        let mut low = 0.0;
+        for k in 1..=(parts as u32) {
+            if k > 1 {
+                core::mem::swap(&mut self.from, &mut self.to);
+            }
+            let high = f64::from(k) / parts;
+            self.pass(step, [low, high], parts == 1.0);
+            low = high;
+        }
+    }
+
+    fn switched(&mut self, switching: &Switching) {
+        self.is_known = false;
+        let Switching { after, negative_after, .. } = switching;
+        self.model.outputs(after.t, after.x.as_slice(), negative_after, &mut self.row);
+        take(&mut self.windows, after.t, &self.row);
+    }
+}
