@@ -133,22 +133,39 @@ def test_a_sweep_by_a_dict_is_that_of_the_file(tmp_path):
     assert all((tmp_path / "a" / name).read_bytes() == (tmp_path / "b" / name).read_bytes() for name in names)
     rows = hacksaw.read_sweep(tmp_path / "a")
     assert list(rows["run"]) == list(range(10)) and np.allclose(rows["torque"], np.linspace(8, 14, 10))
-    assert rows.units["torque"] == "N*m" and set(rows["failure"]) == {""}
+    assert rows.units["torque"] == "N*m" and set(rows["status"]) == {"done"}
     with pytest.raises(ValueError, match="has another sweep: `t_end` is 0.02 there and 0.03 here"):
         hacksaw.sweep({**PLAN, "t_end": 0.03}, tmp_path / "a")
 
 
-def test_other_readers_read_a_sweep_to_the_same_bits(tmp_path):
-    pandas, polars = pytest.importorskip("pandas"), pytest.importorskip("polars")
-    pytest.importorskip("pyarrow")
-    hacksaw.sweep({**PLAN, "trajectories": True}, tmp_path)
+def read_by(reader, paths):
+    """Columns by name as lists, None where there is no value."""
+    module = pytest.importorskip(reader)
+    if reader == "duckdb":
+        found = module.sql(f"select * from read_parquet({[str(path) for path in paths]!r})")
+        return dict(zip(found.columns, map(list, zip(*found.fetchall()))))
+    if reader == "fastparquet":
+        frame = pytest.importorskip("pandas").concat(module.ParquetFile(str(path)).to_pandas() for path in paths)
+        return {name: [None if value != value else value for value in frame[name]] for name in frame.columns}
+    if reader == "polars":
+        return module.read_parquet(paths).to_dict(as_series=False)
+    return pytest.importorskip("pyarrow.parquet").read_table([str(path) for path in paths]).to_pydict()
+
+
+@pytest.mark.parametrize("reader", ["pyarrow", "fastparquet", "duckdb", "polars"])
+def test_other_readers_read_a_sweep_to_the_same_bits(tmp_path, reader):
+    # The crank with this many steps comes to the end from a low torque only, so values of some runs are missing.
+    hacksaw.sweep({**PLAN, "trajectories": True, "event_times": 1, "step_limit": 60, "t_end": 0.05}, tmp_path)
     for kind in ("runs", "trajectories"):
         ours = hacksaw.read_sweep(tmp_path, trajectories=kind == "trajectories")
-        theirs = pandas.concat(map(pandas.read_parquet, sorted(tmp_path.glob(f"{kind}-*.parquet"))))
-        other = polars.read_parquet(tmp_path / f"{kind}-*.parquet")
-        assert list(theirs.columns) == ours.keys() == other.columns
+        theirs = read_by(reader, sorted(tmp_path.glob(f"{kind}-*.parquet")))
+        assert list(theirs) == list(ours.keys())
         for name in ours:
-            assert list(theirs[name]) == list(ours[name]) == other[name].to_list(), name
+            expected = [None if value != value else value for value in ours[name].tolist()]
+            assert theirs[name] == expected, name
+    rows = hacksaw.read_sweep(tmp_path)
+    assert all((reason != "") == (status != "done") for reason, status in zip(rows["reason"], rows["status"]))
+    assert np.isnan(rows["event_1"]).any()
 
 
 def test_ctrl_c_ends_a_sweep_between_runs(tmp_path):

@@ -97,7 +97,7 @@ fn sentence(outcome: &Outcome, folder: &Folder, step: f64) -> String {
     let place = folder.path().display();
     format!(
         "sweep of {runs} runs: {part}{made} files made{before}; {made_runs} runs, {failed} of them failed\n\
-         max, min, mean and integral are those of samples every {} s\n\
+         mean and integral are those of samples every {} s\n\
          written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table\n",
         number(step)
     )

@@ -103,11 +103,7 @@ impl Folder {
         fs::create_dir_all(path).map_err(failed)?;
         if !file.exists() {
             // The first of several processes wins; what it wrote is compared below by all of them.
-            let mut aside = tempfile::Builder::new()
-                .prefix(&format!(".{RECIPE}"))
-                .suffix(ASIDE)
-                .tempfile_in(path)
-                .map_err(failed)?;
+            let mut aside = whole::beside(&file).map_err(failed)?;
             aside.write_all(format!("{HEAD}{recipe}").as_bytes()).map_err(failed)?;
             match aside.persist_noclobber(&file) {
                 Err(fault) if fault.error.kind() != io::ErrorKind::AlreadyExists => {

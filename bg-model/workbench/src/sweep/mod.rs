@@ -38,7 +38,7 @@ use plan::{Plan, PlanError};
 use runs::{Done, Job};
 
 /// The columns that every sweep has.
-const OWN_COLUMNS: [&str; 5] = ["run", "failure", "reached", "steps", "events"];
+const OWN_COLUMNS: [&str; 6] = ["run", "status", "reason", "reached", "steps", "events"];
 /// Runs of each thread until files are written: the last ones of them keep a thread waiting for the others.
 const RUNS_OF_A_THREAD: usize = 100;
 /// The stack of a thread, as the first one of a program has it: steps of large models have their matrices there.
@@ -176,7 +176,7 @@ fn all(
         let parts = || numbers.par_chunks(together).with_max_len(1).map(some).collect::<Option<Vec<Vec<Done>>>>();
         let Some(parts) = pool.install(parts) else { return Ok(outcome) };
         let done: Vec<Done> = parts.into_iter().flatten().collect();
-        outcome.failed += done.iter().filter(|done| !done.failure.is_empty()).count();
+        outcome.failed += done.iter().filter(|done| done.has_failed()).count();
         outcome.made_runs += done.len();
         let mut rest = done.into_iter();
         let of_shards: Vec<(usize, Vec<Done>)> =

@@ -1,9 +1,10 @@
-//! Tables as Parquet files: one row group, a page for each column, no value missing.
+//! Tables as Parquet files: one row group, a page for each column.
 //!
 //! In: columns of numbers and texts, texts about them. Out: the file's bytes, and from these the same again. Numbers
-//! are exact. Metadata are those of `polars-parquet-format`; pages are written here, for they are short: the values one
-//! after the other (of real numbers first all first bytes, then all second ones, ..: `BYTE_STREAM_SPLIT`), compressed
-//! by Snappy. Source: Apache Parquet, "File Format" and "Encodings", parquet.apache.org/docs/file-format.
+//! are exact; a real number that is none is null. Metadata are those of `polars-parquet-format`; pages are written here,
+//! for they are short: the values one after the other (`PLAIN`, which every reader has), compressed by Snappy; of real
+//! numbers before them which are there (definition levels, `RLE`). Source: Apache Parquet, "File Format" and "Encodings",
+//! parquet.apache.org/docs/file-format.
 
 use polars_parquet_format::thrift::protocol::{TCompactInputProtocol, TCompactOutputProtocol};
 use polars_parquet_format::{
@@ -21,7 +22,7 @@ const TAIL: usize = 8;
 pub enum Values {
     /// Whole numbers.
     Whole(Vec<i64>),
-    /// Real numbers; not a number where there is no value.
+    /// Real numbers; not a number where there is no value, which is null in the file.
     Real(Vec<f64>),
     /// Texts.
     Text(Vec<String>),
@@ -72,11 +73,11 @@ impl Values {
         }
     }
 
-    const fn kind(&self) -> (Type, Encoding) {
+    const fn kind(&self) -> Type {
         match self {
-            Self::Whole(_) => (Type::INT64, Encoding::PLAIN),
-            Self::Real(_) => (Type::DOUBLE, Encoding::BYTE_STREAM_SPLIT),
-            Self::Text(_) => (Type::BYTE_ARRAY, Encoding::PLAIN),
+            Self::Whole(_) => Type::INT64,
+            Self::Real(_) => Type::DOUBLE,
+            Self::Text(_) => Type::BYTE_ARRAY,
         }
     }
 
@@ -85,7 +86,9 @@ impl Values {
         match self {
             Self::Whole(values) => values.iter().flat_map(|value| value.to_le_bytes()).collect(),
             Self::Real(values) => {
-                (0..8).flat_map(|place| values.iter().map(move |value| value.to_le_bytes()[place])).collect()
+                let levels = levels(values);
+                let there = values.iter().filter(|value| !value.is_nan()).flat_map(|value| value.to_le_bytes());
+                (levels.len() as u32).to_le_bytes().into_iter().chain(levels).chain(there).collect()
             }
             Self::Text(values) => {
                 let text = |value: &String| [&(value.len() as u32).to_le_bytes(), value.as_bytes()].concat();
@@ -96,12 +99,19 @@ impl Values {
 
     /// The values of a page with `count` of them.
     fn decoded(kind: Type, bytes: &[u8], count: usize) -> Result<Self, ParquetError> {
-        let words = || bytes.chunks_exact(8).map(|word| word.try_into().expect("eight bytes"));
         match kind {
-            Type::INT64 if bytes.len() == 8 * count => Ok(Self::Whole(words().map(i64::from_le_bytes).collect())),
-            Type::DOUBLE if bytes.len() == 8 * count => {
-                let word = |row: usize| std::array::from_fn(|place| bytes[place * count + row]);
-                Ok(Self::Real((0..count).map(|row| f64::from_le_bytes(word(row))).collect()))
+            Type::INT64 if bytes.len() == 8 * count => Ok(Self::Whole(words(bytes).map(i64::from_le_bytes).collect())),
+            Type::DOUBLE => {
+                let (length, rest) = bytes.split_first_chunk().ok_or(ParquetError::Cut)?;
+                let length = u32::from_le_bytes(*length) as usize;
+                let (levels, rest) = rest.split_at_checked(length).ok_or(ParquetError::Cut)?;
+                let are_there = are_there(levels, count)?;
+                if rest.len() != 8 * are_there.iter().filter(|is_there| **is_there).count() {
+                    return Err(ParquetError::Foreign);
+                }
+                let mut there = words(rest).map(f64::from_le_bytes);
+                let value = |is_there: bool| if is_there { there.next().unwrap_or(f64::NAN) } else { f64::NAN };
+                Ok(Self::Real(are_there.into_iter().map(value).collect()))
             }
             Type::BYTE_ARRAY => {
                 let mut rest = bytes;
@@ -117,6 +127,49 @@ impl Values {
             _ => Err(ParquetError::Foreign),
         }
     }
+}
+
+/// Numbers of eight bytes.
+fn words(bytes: &[u8]) -> impl Iterator<Item = [u8; 8]> {
+    bytes.chunks_exact(8).map(|word| word.try_into().expect("eight bytes"))
+}
+
+/// Which numbers are there, as runs: the length of each, twice, in groups of seven bits, then 1 or 0.
+fn levels(values: &[f64]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for run in values.chunk_by(|a, b| a.is_nan() == b.is_nan()) {
+        let mut length = run.len() << 1;
+        while length >= 0x80 {
+            bytes.push(length as u8 | 0x80);
+            length >>= 7;
+        }
+        bytes.extend([length as u8, u8::from(!run[0].is_nan())]);
+    }
+    bytes
+}
+
+/// The same read back, of `count` numbers.
+fn are_there(levels: &[u8], count: usize) -> Result<Vec<bool>, ParquetError> {
+    let mut found = Vec::with_capacity(count);
+    let mut bytes = levels.iter();
+    while found.len() < count {
+        let (mut length, mut shift) = (0_usize, 0);
+        loop {
+            let byte = *bytes.next().ok_or(ParquetError::Cut)?;
+            length |= usize::from(byte & 0x7f).checked_shl(shift).ok_or(ParquetError::Foreign)?;
+            shift += 7;
+            if byte & 0x80 == 0 {
+                break;
+            }
+        }
+        let level = *bytes.next().ok_or(ParquetError::Cut)?;
+        // Others may pack single bits, and so say by an odd number.
+        if length & 1 != 0 || level > 1 || (length >> 1) > count - found.len() {
+            return Err(ParquetError::Foreign);
+        }
+        found.resize(found.len() + (length >> 1), level == 1);
+    }
+    Ok(found)
 }
 
 impl Table {
@@ -164,10 +217,13 @@ impl Table {
     fn schema(&self) -> Vec<SchemaElement> {
         let element = |name: &str, children: Option<i32>, kind: Option<Type>| {
             let is_text = kind == Some(Type::BYTE_ARRAY);
+            let repetition = |kind: Type| {
+                if kind == Type::DOUBLE { FieldRepetitionType::OPTIONAL } else { FieldRepetitionType::REQUIRED }
+            };
             SchemaElement {
                 type_: kind,
                 type_length: None,
-                repetition_type: kind.map(|_| FieldRepetitionType::REQUIRED),
+                repetition_type: kind.map(repetition),
                 name: name.to_owned(),
                 num_children: children,
                 converted_type: is_text.then_some(ConvertedType::UTF8),
@@ -178,7 +234,7 @@ impl Table {
             }
         };
         let count = i32::try_from(self.columns.len()).expect("columns can be counted");
-        let columns = self.columns.iter().map(|column| element(&column.name, None, Some(column.values.kind().0)));
+        let columns = self.columns.iter().map(|column| element(&column.name, None, Some(column.values.kind())));
         std::iter::once(element("runs", Some(count), None)).chain(columns).collect()
     }
 
@@ -219,7 +275,7 @@ fn texts(metadata: FileMetaData) -> Vec<(String, String)> {
 /// Appends a column's page to `file`.
 fn chunk(file: &mut Vec<u8>, column: &Column, rows: usize) -> ColumnChunk {
     assert_eq!(column.values.len(), rows, "`{}` has a value for each row", column.name);
-    let (kind, encoding) = column.values.kind();
+    let (kind, encoding) = (column.values.kind(), Encoding::PLAIN);
     let plain = column.values.encoded();
     let compressed = snap::raw::Encoder::new().compress_vec(&plain).expect("a page is below 4 GB");
     let size = |bytes: &[u8]| i32::try_from(bytes.len()).expect("a page is below 2 GB");
@@ -292,6 +348,10 @@ fn column(file: &[u8], chunk: &ColumnMetaData) -> Result<Column, ParquetError> {
     if header.crc.is_none_or(|crc| crc.cast_unsigned() != rawzip::crc32(rest)) {
         return Err(ParquetError::Cut);
     }
+    let encoding = header.data_page_header.as_ref().map(|header| header.encoding);
+    if encoding != Some(Encoding::PLAIN) {
+        return Err(ParquetError::Foreign);
+    }
     let plain = snap::raw::Decoder::new().decompress_vec(rest)?;
     Ok(Column { name, values: Values::decoded(chunk.type_, &plain, count?)? })
 }
@@ -304,7 +364,7 @@ mod tests {
         let columns = [
             ("run", Values::Whole(vec![0, -1, i64::MAX])),
             ("x", Values::Real(vec![1.0 / 3.0, -0.0, f64::INFINITY])),
-            ("failure", Values::Text(vec![String::new(), "no step of 1\u{B5}s".to_owned(), "x".to_owned()])),
+            ("reason", Values::Text(vec![String::new(), "no step of 1\u{B5}s".to_owned(), "x".to_owned()])),
         ];
         let columns = columns.map(|(name, values)| Column { name: name.to_owned(), values });
         Table { columns: columns.to_vec(), texts: vec![("plan".to_owned(), "a\nb".to_owned())] }
@@ -321,6 +381,19 @@ mod tests {
         let empty =
             Table { columns: vec![Column { name: "x".to_owned(), values: Values::Real(vec![]) }], texts: vec![] };
         assert_eq!(Table::read(&empty.bytes()).unwrap(), empty);
+    }
+
+    #[test]
+    fn numbers_that_are_none_stay_none_wherever_they_are() {
+        let long = [vec![f64::NAN; 3], vec![1.5; 100], vec![f64::NAN; 70_000], vec![-2.0], vec![f64::NAN]].concat();
+        for values in [vec![f64::NAN; 2], vec![f64::NAN, 0.0], long] {
+            let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+            let expected = bits(&values);
+            let column = Column { name: "x".to_owned(), values: Values::Real(values) };
+            let read = Table::read(&Table { columns: vec![column], texts: vec![] }.bytes()).unwrap();
+            let Values::Real(read) = &read.columns[0].values else { panic!("real numbers") };
+            assert_eq!(bits(read), expected);
+        }
     }
 
     #[test]

@@ -23,6 +23,8 @@ const PLAN: &str = "plan";
 pub(super) const INPUTS: &str = "inputs";
 /// The entry with the files of those that are tables.
 pub(super) const INPUT_FILES: &str = "input_files";
+/// What shards have and what their numbers mean; counts up where that changes.
+const FORMAT: usize = 2;
 /// What stands for an absolute tolerance where the sizes of the states give it.
 pub(super) const OF_SIZES: &str = "by the sizes of the states";
 
@@ -43,6 +45,7 @@ pub fn of(program: &Program, plan: &Plan<'_>) -> Table {
     let entries = [
         ("program", Value::String(program.texts.name.clone())),
         ("version", Value::String(program.texts.version.clone())),
+        ("format", whole(FORMAT)),
         ("scene", Value::String(scene.name.clone())),
         ("model", Value::String(fingerprint(model))),
         ("start", Value::String(if *begin == Begin::Equilibrium { "equilibrium" } else { "model" }.to_owned())),

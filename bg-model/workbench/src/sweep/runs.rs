@@ -51,16 +51,46 @@ pub fn run(asked: Asked<'_>, begin: &Begin, values: &[f64]) -> Result<Outcome, S
     follow(&*machine, request.clone(), from.as_ref(), |_| ()).map_err(|fault| fault.to_string())
 }
 
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Status {
+    /// To its end.
+    Done,
+    /// It stopped before its end.
+    Stopped,
+    /// There is no such model, or it cannot start.
+    Refused,
+}
+
+impl Status {
+    /// Its name in a table.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Done => "done",
+            Self::Stopped => "stopped",
+            Self::Refused => "refused",
+        }
+    }
+}
+
 /// What is kept of a run.
 #[derive(Debug)]
 pub struct Done {
+    status: Status,
     /// Why there is no result; empty where there is one.
-    pub failure: String,
+    reason: String,
     reached: f64,
     steps: u64,
     events: usize,
     numbers: Vec<f64>,
     samples: Option<Recording>,
+}
+
+impl Done {
+    /// Whether there is no result.
+    pub fn has_failed(&self) -> bool {
+        self.status != Status::Done
+    }
 }
 
 /// All that the rows of a sweep depend on.
@@ -142,17 +172,19 @@ impl<'a> Job<'a> {
         let width = self.wanted.reductions.len() + self.wanted.event_times;
         let Outcome { run, failure } = match outcome {
             Ok(outcome) => outcome,
-            Err(failure) => {
+            Err(reason) => {
                 let numbers = vec![f64::NAN; width];
-                return Done { failure, reached: 0.0, steps: 0, events: 0, numbers, samples: None };
+                let (status, reached) = (Status::Refused, f64::NAN);
+                return Done { status, reason, reached, steps: 0, events: 0, numbers, samples: None };
             }
         };
-        let numbers = match failure {
+        let numbers = match &failure {
             Some(_) => vec![f64::NAN; width],
             None => self.wanted.numbers(&run),
         };
         Done {
-            failure: failure.unwrap_or_default(),
+            status: if failure.is_some() { Status::Stopped } else { Status::Done },
+            reason: failure.unwrap_or_default(),
             reached: run.last.t,
             steps: run.statistics.steps,
             events: run.events.len(),
@@ -163,7 +195,7 @@ impl<'a> Job<'a> {
 
     /// A row for each of the runs from `first` on.
     pub fn table(&self, first: usize, done: &[Done]) -> Table {
-        let [run, failure, reached, steps, events] = OWN_COLUMNS;
+        let [run, status, reason, reached, steps, events] = OWN_COLUMNS;
         let numbers: Vec<i64> = (first..first + done.len()).map(|run| run as i64).collect();
         let values: Vec<Vec<f64>> = (first..first + done.len()).map(|run| self.design.values(run)).collect();
         let mut columns = vec![(run.to_owned(), String::new(), Values::Whole(numbers))];
@@ -172,8 +204,9 @@ impl<'a> Job<'a> {
             let values = values.iter().map(|values| values[place]).collect();
             columns.push((info.name.to_owned(), info.unit.to_owned(), Values::Real(values)));
         }
-        let failures = done.iter().map(|done| done.failure.clone()).collect();
-        columns.push((failure.to_owned(), String::new(), Values::Text(failures)));
+        let text = |of: fn(&Done) -> String| Values::Text(done.iter().map(of).collect());
+        columns.push((status.to_owned(), String::new(), text(|done| done.status.name().to_owned())));
+        columns.push((reason.to_owned(), String::new(), text(|done| done.reason.clone())));
         let real = |of: &dyn Fn(&Done) -> f64| Values::Real(done.iter().map(of).collect());
         let whole = |of: fn(&Done) -> i64| Values::Whole(done.iter().map(of).collect());
         columns.push((reached.to_owned(), "s".to_owned(), real(&|done| done.reached)));

@@ -24,17 +24,17 @@ pub fn lines(folder: &Folder) -> Result<String, FolderError> {
     for table in tables(folder, Kind::Runs)? {
         let table = table?;
         shards += 1;
-        let (Some(Values::Whole(numbers)), Some(Values::Text(failures))) =
-            (values(&table, "run"), values(&table, "failure"))
+        let (Some(Values::Whole(numbers)), Some(Values::Text(found))) =
+            (values(&table, "run"), values(&table, "reason"))
         else {
             continue;
         };
         runs += numbers.len();
-        for (number, failure) in numbers.iter().zip(failures).filter(|(_, failure)| !failure.is_empty()) {
+        for (number, reason) in numbers.iter().zip(found).filter(|(_, reason)| !reason.is_empty()) {
             failed += 1;
-            match reasons.iter().position(|(known, ..)| known == failure) {
+            match reasons.iter().position(|(known, ..)| known == reason) {
                 Some(place) => reasons[place].1 += 1,
-                None if reasons.len() < MOST => reasons.push((failure.clone(), 1, *number)),
+                None if reasons.len() < MOST => reasons.push((reason.clone(), 1, *number)),
                 None => {}
             }
         }
@@ -56,7 +56,7 @@ pub fn lines(folder: &Folder) -> Result<String, FolderError> {
 }
 
 /// Writes the rows of all shards that are there as CSV; every number in the shortest form that reads back to the same
-/// bits.
+/// bits, nothing where there is none.
 ///
 /// # Errors
 /// A file cannot be read, or `writer` fails.
@@ -73,6 +73,7 @@ pub fn write_csv(folder: &Folder, kind: Kind, writer: impl Write) -> io::Result<
         for row in 0..rows {
             let field = |values: &Values| match values {
                 Values::Whole(values) => values[row].to_string(),
+                Values::Real(values) if values[row].is_nan() => String::new(),
                 Values::Real(values) => format!("{:?}", values[row]),
                 Values::Text(values) => values[row].clone(),
             };
@@ -107,7 +108,7 @@ fn inputs(recipe: &toml::Table) -> String {
 /// How far the samples are apart that columns are made from.
 fn samples(recipe: &toml::Table) -> String {
     let step = recipe.get("step").map_or_else(String::new, ToString::to_string);
-    format!("samples  every {step} s; max, min, mean and integral are those of samples\n")
+    format!("samples  every {step} s; mean and integral are those of samples\n")
 }
 
 fn whole(recipe: &toml::Table, name: &str) -> usize {

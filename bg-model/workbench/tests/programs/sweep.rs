@@ -61,10 +61,18 @@ fn a_row_has_what_a_single_run_has() {
     let path = folder.path();
     let said = text(path, &["sweep", "--plan", "plan.toml", "--out", "o"]);
     assert!(said.starts_with("sweep of 30 runs: 5 files made; 30 runs, 0 of them failed\n"), "{said}");
+    // As any new file: as the user's mask has it, be it the recipe or a shard.
+    #[cfg(unix)]
+    {
+        let mode =
+            |name: &str| std::os::unix::fs::PermissionsExt::mode(&fs::metadata(path.join(name)).unwrap().permissions());
+        fs::write(path.join("any"), "").unwrap();
+        assert_eq!(["o/sweep.toml", "o/runs-000000.parquet"].map(mode), [mode("any"); 2]);
+    }
     // Run 13 is the third length with the fourth angle, the last of the second shard.
     let shard = table(path.join("o/runs-000001.parquet"));
     let names: Vec<&str> = shard.columns.iter().map(|column| column.name.as_str()).collect();
-    let own = ["run", "length", "angle", "failure", "reached", "steps", "events"];
+    let own = ["run", "length", "angle", "status", "reason", "reached", "steps", "events"];
     assert_eq!(names, [&own[..], &["angle_max", "angle_final", "force_x_mean", "force_x_integral"]].concat());
     assert_eq!(shard.columns[0].values, Values::Whole((7..14).collect()));
     let length = reals(&shard, "length")[6];
@@ -155,8 +163,12 @@ fn a_run_that_fails_is_a_row_with_its_reason() {
     let said = text(path, &["sweep", "--plan", "plan.toml", "--out", "o"]);
     assert!(said.contains("2 runs, 1 of them failed"), "{said}");
     let shard = table(path.join("o/runs-000000.parquet"));
-    let Values::Text(failures) = &shard.columns[3].values else { panic!("a column of texts") };
-    assert!(failures[0].is_empty() && failures[1].starts_with("the limit of 120 attempted steps"), "{failures:?}");
+    let [status, reasons] = [3, 4].map(|place| match &shard.columns[place].values {
+        Values::Text(texts) => texts,
+        other => panic!("a column of texts: {other:?}"),
+    });
+    assert_eq!(*status, ["done", "stopped"]);
+    assert!(reasons[0].is_empty() && reasons[1].starts_with("the limit of 120 attempted steps"), "{reasons:?}");
     assert_eq!(reals(&shard, "angle_max").iter().map(|value| value.is_nan()).collect::<Vec<_>>(), [false, true]);
     let reached = reals(&shard, "reached");
     assert!(reached[0] == 0.11 && 0.0 < reached[1] && reached[1] < 0.11, "{reached:?}");
@@ -166,11 +178,13 @@ fn a_run_that_fails_is_a_row_with_its_reason() {
     let count = |run: i64| runs.iter().filter(|&&of| of == run).count();
     assert!(count(0) == 12 && count(1) == 1 + (100.0 * reached[1]) as usize, "{} {}", count(0), count(1));
     let said = text(path, &["sweep", "show", "o", "--csv", "o.csv"]);
-    assert!(said.contains("\nsamples  every 0.01 s; max, min, mean and integral are those of samples\n"), "{said}");
+    assert!(said.contains("\nsamples  every 0.01 s; mean and integral are those of samples\n"), "{said}");
     assert!(said.contains("runs     2 of 2 in 1 of 1 shards\nfailed   1\n         run 1: the limit of 120"), "{said}");
     let csv = fs::read_to_string(path.join("o.csv")).unwrap();
-    assert!(csv.starts_with("run,angle,length,failure,reached,steps,events,angle_max,"), "{csv}");
-    assert!(csv.lines().nth(1).unwrap().starts_with("0,0.5,0.6,,0.11,"), "{csv}");
+    assert!(csv.starts_with("run,angle,length,status,reason,reached,steps,events,angle_max,"), "{csv}");
+    assert!(csv.lines().nth(1).unwrap().starts_with("0,0.5,0.6,done,,0.11,"), "{csv}");
+    let failed = csv.lines().nth(2).unwrap();
+    assert!(failed.starts_with("1,1.57,0.4,stopped,") && failed.ends_with(",,,"), "no value is empty: {csv}");
 }
 
 #[test]
