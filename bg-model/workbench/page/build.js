@@ -5,4 +5,4 @@ import { build } from "esbuild";
 import { bundle } from "./bundle.js";
 
 const folder = new URL(".", import.meta.url).pathname;
-await bundle(build, folder, { report: "src/main.js", worker: "src/worker.js" });
+await bundle(build, folder, { report: "src/report.js", plain: "src/plain.js", worker: "src/worker.js" });

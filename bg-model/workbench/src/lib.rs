@@ -65,8 +65,7 @@
 //! | [`gradient`] | how one number of a run depends on all parameters |
 //! | [`identify`] | which parameters come nearest to what was measured |
 //! | [`summary`] | what a run results in, in numbers |
-//! | [`overview`] | all of it on one page |
-//! | [`page`] | the same in motion, in one file that needs nothing else |
+//! | [`page`] | all of it on one page that needs nothing else, in motion where there is a machine |
 //! | [`live`] | the same with the model inside, so that the page can run it again |
 //! | [`markup`] | texts as HTML |
 //! | [`shown`] | which page shows a run, and with which files |
@@ -117,7 +116,6 @@ pub mod live;
 pub mod machine;
 pub mod maker;
 pub mod markup;
-pub mod overview;
 pub mod page;
 pub mod parameters;
 pub mod picture;

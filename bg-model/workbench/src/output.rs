@@ -14,7 +14,7 @@ use bg_model::simulation::Recording;
 use crate::extras::Page as Texts;
 use crate::figures::{Figure, FigureError};
 use crate::files::{FileError, RunFolder, whole};
-use crate::shown::{Exhibits, OVERVIEW, Page};
+use crate::shown::{Exhibits, Page};
 use crate::summary::Summary;
 
 /// The names of the files beside the figures.
@@ -27,21 +27,31 @@ const JSON: &str = "summary.json";
 pub struct Places {
     /// The CSV file, where it is not one of the folder's.
     pub csv: Option<PathBuf>,
-    /// The folder of figures, overview page and summary; `None` where only the CSV file is wanted.
+    /// The folder of figures, page and summary; `None` where only the CSV file is wanted.
     pub folder: Option<PathBuf>,
-    /// The figures that are wanted, with the overview page; `None` without a page.
-    pub figures: Option<Vec<Figure>>,
-    /// The report that is wanted in place of the overview page; the figures are then in it.
-    pub report: Option<ReportFiles>,
+    /// The figures that are wanted.
+    pub figures: Vec<Figure>,
+    /// The page, where one is wanted.
+    pub page: Option<PageFiles>,
 }
 
-/// The names of the files of a report.
+/// The files of a page.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ReportFiles {
-    /// The page.
+pub struct PageFiles {
+    /// The name of the page.
     pub page: String,
-    /// The machine in motion as binary glTF, where that is wanted.
+    /// Whether the figures have files beside it.
+    pub figures: bool,
+    /// The name of the machine in motion as binary glTF, where that is wanted.
     pub glb: Option<String>,
+}
+
+impl PageFiles {
+    /// Those of a run: a page without the machine, and the figures.
+    #[must_use]
+    pub fn of_run() -> Self {
+        Self { page: "index.html".to_owned(), figures: true, glb: None }
+    }
 }
 
 /// An output that fails.
@@ -72,22 +82,16 @@ pub enum OutputError {
 }
 
 impl Places {
-    /// The places that the command line chooses: without `csv` the trajectory goes into `folder`; without figures and
+    /// The places that the command line chooses: without `csv` the trajectory goes into `folder`; without a page and
     /// with `csv` nothing goes there.
     #[must_use]
-    pub fn new(folder: &Path, csv: Option<&Path>, figures: Option<Vec<Figure>>) -> Self {
+    pub fn new(folder: &Path, csv: Option<&Path>, page: Option<PageFiles>, figures: Vec<Figure>) -> Self {
         Self {
             csv: csv.filter(|csv| *csv != folder.join(CSV)).map(Path::to_owned),
-            folder: (figures.is_some() || csv.is_none()).then(|| folder.to_owned()),
+            folder: (page.is_some() || csv.is_none()).then(|| folder.to_owned()),
             figures,
-            report: None,
+            page,
         }
-    }
-
-    /// The same with a report in `folder`.
-    #[must_use]
-    pub fn with_report(self, folder: &Path, report: ReportFiles) -> Self {
-        Self { folder: Some(folder.to_owned()), report: Some(report), ..self }
     }
 
     /// The names of the files that may go into the folder.
@@ -95,12 +99,11 @@ impl Places {
     pub fn names(&self) -> Vec<String> {
         let csv = self.csv.is_none().then_some(CSV);
         let names = csv.into_iter().chain([TEXT, JSON]).map(str::to_owned);
-        if let Some(ReportFiles { page, glb }) = &self.report {
-            return names.chain([page.clone()]).chain(glb.clone()).collect();
-        }
-        let figures = self.figures.iter().flatten().map(|figure| figure.file.clone());
-        let page = self.figures.as_ref().map(|_| OVERVIEW.to_owned());
-        names.chain(page).chain(figures).collect()
+        let of_page = self.page.iter().flat_map(|PageFiles { page, figures, glb }| {
+            let figures = self.figures.iter().filter(|_| *figures).map(|figure| figure.file.clone());
+            std::iter::once(page.clone()).chain(glb.clone()).chain(figures)
+        });
+        names.chain(of_page).collect()
     }
 
     /// Claims the folder and tries the CSV file, without changing what is there.
@@ -165,13 +168,13 @@ pub struct Written {
 
 impl Claimed {
     /// Writes the CSV file from `output` and everything else from `run` and `summary`, whose list of files it fills.
-    /// `texts` are those of the page; `report` is what the report shows beside them, where one is wanted.
+    /// `texts` are those of the page; `exhibits` is what it shows beside them.
     pub fn write(
         self,
         output: &Table<'_>,
         run: &Recording,
         texts: &Texts,
-        report: Option<&Exhibits<'_>>,
+        exhibits: &Exhibits<'_>,
         summary: &mut Summary,
     ) -> Written {
         let mut written = Written::default();
@@ -183,27 +186,19 @@ impl Claimed {
         }
         let (Some(folder), Some(path)) = (self.folder, self.places.folder) else { return written };
         let own = self.places.csv.is_none().then_some(output);
-        let data = match &written.csv {
-            Some(csv) => csv.strip_prefix(&path).ok().map(Path::to_owned),
-            None => own.map(|_| PathBuf::from(CSV)),
-        };
         let mut figures = Vec::new();
-        let has_page = self.places.figures.is_some();
-        // A run that failed before its first sample has nothing to draw; a report has charts of the usual ones.
-        let is_drawn = |figure: &Figure| !run.times.is_empty() && report.is_none_or(|report| report.is_own(figure));
-        for figure in self.places.figures.into_iter().flatten().filter(is_drawn) {
+        let has_files = self.places.page.as_ref().is_some_and(|page| page.figures);
+        // A run that failed before its first sample has nothing to draw; the page has charts of the usual ones.
+        let is_drawn = |figure: &Figure| !run.times.is_empty() && (has_files || exhibits.is_own(figure));
+        for figure in self.places.figures.into_iter().filter(is_drawn) {
             match (figure.draw)(run) {
                 Ok(svg) => figures.push((figure, svg)),
                 Err(source) => written.faults.push(OutputError::Figure { file: figure.file, source }),
             }
         }
         summary.files = written.csv.iter().cloned().collect();
-        let page = match (&self.places.report, report) {
-            (Some(files), Some(exhibits)) => {
-                Some(Page::Report { files, exhibits, texts, figures, run, rows: &output.samples.times })
-            }
-            _ => has_page.then_some(Page::Overview { texts, figures, data }),
-        };
+        let rows = &output.samples.times;
+        let page = self.places.page.as_ref().map(|files| Page { files, exhibits, texts, figures, run, rows });
         match fill(folder, &path, own, page.as_ref(), summary) {
             Ok(count) => {
                 written.folder = Some((path, count));
@@ -258,7 +253,7 @@ impl fmt::Display for Written {
 mod tests {
     use super::*;
 
-    fn figures() -> Option<Vec<Figure>> {
+    fn figures() -> Vec<Figure> {
         let figure = |file: &str| Figure {
             file: file.to_owned(),
             anchor: String::new(),
@@ -266,33 +261,39 @@ mod tests {
             caption: String::new(),
             draw: std::sync::Arc::new(|_| Ok(String::new())),
         };
-        Some(["a.svg", "b.svg"].map(figure).to_vec())
+        ["a.svg", "b.svg"].map(figure).to_vec()
     }
 
     #[test]
     fn places_follow_the_command_line() {
         let (out, csv) = (Path::new("out"), Path::new("run.csv"));
-        assert_eq!(Places::new(out, None, figures()).names().len(), 6);
-        let both = Places::new(out, Some(csv), figures());
+        let page = || Some(PageFiles::of_run());
+        assert_eq!(Places::new(out, None, page(), figures()).names().len(), 6);
+        let both = Places::new(out, Some(csv), page(), figures());
         assert_eq!((both.csv.as_deref(), both.names().len()), (Some(csv), 5));
-        let alone = Places::new(out, Some(csv), None);
+        let alone = Places::new(out, Some(csv), None, Vec::new());
         assert_eq!((alone.csv.as_deref(), alone.folder), (Some(csv), None));
-        assert_eq!(Places::new(out, None, None).names(), [CSV, TEXT, JSON]);
-        let report = ReportFiles { page: "p.html".to_owned(), glb: Some("p.glb".to_owned()) };
-        let report = Places::new(out, Some(csv), None).with_report(out, report);
+        assert_eq!(Places::new(out, None, None, Vec::new()).names(), [CSV, TEXT, JSON]);
+        let report = PageFiles { page: "p.html".to_owned(), figures: false, glb: Some("p.glb".to_owned()) };
+        let report = Places::new(out, Some(csv), Some(report), figures());
         assert_eq!(
             (report.folder.as_deref(), report.names().join(" ").as_str()),
             (Some(out), "summary.txt summary.json p.html p.glb")
         );
         // The place that the trajectory has anyway.
-        let usual = Places::new(out, Some(&out.join(CSV)), figures());
+        let usual = Places::new(out, Some(&out.join(CSV)), page(), figures());
         assert_eq!((usual.csv.as_deref(), usual.names().len()), (None, 6));
     }
 
     #[test]
     fn claiming_changes_nothing_that_can_be_seen() {
         let directory = tempfile::tempdir().unwrap();
-        let places = Places::new(&directory.path().join("a/b"), Some(&directory.path().join("run.csv")), figures());
+        let places = Places::new(
+            &directory.path().join("a/b"),
+            Some(&directory.path().join("run.csv")),
+            Some(PageFiles::of_run()),
+            figures(),
+        );
         drop(places.claim().unwrap());
         // Where it cannot be told whose lock there is, that stays.
         assert!(!cfg!(unix) || !directory.path().join("a/b").exists());
@@ -302,7 +303,10 @@ mod tests {
     #[test]
     fn a_csv_file_does_not_take_the_name_of_another() {
         let directory = tempfile::tempdir().unwrap();
-        let fault = Places::new(directory.path(), Some(&directory.path().join(JSON)), figures()).claim().unwrap_err();
+        let fault =
+            Places::new(directory.path(), Some(&directory.path().join(JSON)), Some(PageFiles::of_run()), figures())
+                .claim()
+                .unwrap_err();
         assert!(matches!(fault, OutputError::Clash(_)));
     }
 

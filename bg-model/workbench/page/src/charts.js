@@ -85,6 +85,11 @@ export class Charts {
     return magnitude(this.#charts.filter((chart) => chart.unit === unit).map((chart) => chart.size));
   }
 
+  /** Draws all charts anew, those as well that have not been seen yet: on paper there is nothing to scroll to. */
+  draw() {
+    this.#charts.forEach((chart) => chart.draw());
+  }
+
   /** The part of time shown, s; `null` for all of it. */
   get span() {
     return this.#span ?? [this.clock.start, this.clock.end];
@@ -168,6 +173,13 @@ class Chart {
     this.#isSeen = isSeen;
     if (isSeen && this.#plot === null) this.#build();
     this.follow();
+  }
+
+  draw() {
+    const isSeen = this.#isSeen;
+    this.clear();
+    this.see(true);
+    this.#isSeen = isSeen;
   }
 
   rebuild() {

@@ -1,22 +1,13 @@
-// The report page: reads the data that the program wrote into it and makes its sections move.
+// The page of a run: reads the data that the program wrote into it and makes its sections move.
 // In: `<script type="application/json" id="data">` and the packed texts, whose form bg-workbench's `page/data.rs`
-// says. Out: the page in motion.
+// says; what draws a machine, if the page is to have one. Out: the page in motion.
 
-import "uplot/dist/uPlot.min.css";
-import "./style.css";
-import "./view.css";
-import "./charts.css";
-import "./player.css";
-import "./still.css";
-import "./tuning.css";
 import { Charts } from "./charts.js";
 import { Clock } from "./clock.js";
 import { player } from "./controls.js";
 import { read } from "./data.js";
 import { graph } from "./graph.js";
-import { modes } from "./modes.js";
-import { motion } from "./motion.js";
-import { still } from "./still.js";
+import { onPaper } from "./page.js";
 import { texts } from "./texts.js";
 import { trial } from "./trial.js";
 import { Tuning } from "./tuning.js";
@@ -31,6 +22,7 @@ const data = read(JSON.parse(document.getElementById("data").textContent));
 const section = (name) => document.getElementById(name);
 const clock = new Clock(data.times[0] ?? 0, data.times.at(-1) ?? 0);
 const charts = new Charts(clock);
+onPaper(() => charts.draw());
 
 /** After the first frame is on the screen: what comes then does not keep the page from being seen. */
 const painted = () =>
@@ -67,13 +59,14 @@ async function tuning({ mark, view, picture }) {
   return made;
 }
 
-async function start() {
+/** Fills the page; `machine` has what makes the section of the machine and the modes that it swings in. */
+async function start({ motion, modes }) {
   const mark = player(section("player"), clock, data.events);
   for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
   for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
   // Where the machine is to move at once, that comes first.
   if (!plays) await painted();
-  const view = data.animation ? motion(section("machine"), data.animation, clock) : null;
+  const view = data.animation && motion ? motion(section("machine"), data.animation, clock) : null;
   if (data.modes && view) modes(section("modes"), data.modes, view, clock);
   if (plays) {
     clock.play();
@@ -85,11 +78,16 @@ async function start() {
   }
   const bonds = JSON.parse(await unpacked("bonds"));
   const picture = section("picture") ? graph(section("picture"), bonds, charts) : null;
+  onPaper((isPaper) => view?.print(isPaper));
   const live = await tuning({ mark, view, picture });
   await draw();
   return { clock, charts, view, picture, live, faults };
 }
 
-if (location.hash === "#test") trial(start);
-else if (location.hash.startsWith("#still=")) still(start);
-else start().catch((fault) => console.error(fault));
+/** Fills the page as its address asks for: as it is, under test, or with the machine alone. */
+export function begin(machine) {
+  const started = () => start(machine);
+  if (location.hash === "#test") trial(started);
+  else if (location.hash.startsWith("#still=") && machine.still) machine.still(started);
+  else started().catch((fault) => console.error(fault));
+}

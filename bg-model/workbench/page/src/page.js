@@ -27,6 +27,20 @@ export function onScheme(listener) {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", listener);
 }
 
+/** Calls `listener` with whether the page is about to be printed, in light colours, or is on the screen again. */
+export function onPaper(listener) {
+  const { classList } = document.documentElement;
+  for (const [event, isPaper] of [
+    ["beforeprint", true],
+    ["afterprint", false],
+  ]) {
+    addEventListener(event, () => {
+      classList.toggle("paper", isPaper);
+      listener(isPaper);
+    });
+  }
+}
+
 /** A number as a person reads it, to `digits` digits, with a true minus sign. */
 export function number(value, digits = 5) {
   if (value === null || value === undefined || !Number.isFinite(value)) return "\u2013";

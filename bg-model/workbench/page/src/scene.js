@@ -346,6 +346,18 @@ export class MachineView {
     return joint < 0 ? label : `${label}: ${number(this.arrows.force(joint, this.clock.time).length(), 4)} N`;
   }
 
+  /** Puts a copy in the place of the view: a browser prints none of its own. */
+  print(isPaper) {
+    this.copy?.remove();
+    this.copy = null;
+    if (!isPaper) return;
+    this.renderer.render(this.scene, this.camera);
+    this.copy = document.createElement("canvas");
+    Object.assign(this.copy, { className: "copy", width: this.canvas.width, height: this.canvas.height });
+    this.copy.getContext("2d").drawImage(this.canvas, 0, 0);
+    this.canvas.after(this.copy);
+  }
+
   /** Draws with the next frame of the screen, however often it is asked for until then. */
   draw() {
     if (this.isAsked) return;

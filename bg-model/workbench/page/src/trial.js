@@ -121,6 +121,9 @@ async function found(verdict, { clock, charts, view, picture, live }) {
     verdict.bond_charts = document.querySelectorAll(".bond-panel .chart").length;
   }
   verdict.live = await tuned({ charts, live });
+  dispatchEvent(new Event("beforeprint"));
+  verdict.blank_on_paper = charts.all.filter((chart) => chart.over === null).length;
+  dispatchEvent(new Event("afterprint"));
   const { scrollWidth, clientWidth } = document.documentElement;
   const drawings = [...document.querySelectorAll("img[data-drawing]")];
   await Promise.all(drawings.map((image) => image.decode()));

@@ -10,14 +10,14 @@ use super::run::simulate;
 use crate::Program;
 use crate::live::Module;
 use crate::machine::Machine;
-use crate::output::ReportFiles;
+use crate::output::PageFiles;
 use crate::page::Linearised;
 use crate::page::film::Film;
 
 /// What a report is to show beside the run.
 pub struct Look {
     /// Its files.
-    pub files: ReportFiles,
+    pub files: PageFiles,
     /// More drawings, each with its title: SVG texts.
     pub drawings: Vec<(String, String)>,
     /// Where to linearise, if at all: at a time, s, or at the equilibrium.
@@ -31,7 +31,8 @@ pub struct Look {
 pub fn report(program: &Program, arguments: &ReportArguments) -> Result<ExitCode, InputError> {
     let ReportArguments { run, glb, modes, show, live } = arguments;
     let name = &program.texts.name;
-    let files = ReportFiles { page: format!("{name}.html"), glb: glb.then(|| format!("{name}.glb")) };
+    let glb = glb.then(|| format!("{name}.glb"));
+    let files = PageFiles { page: format!("{name}.html"), figures: false, glb };
     let drawings = show.iter().map(|path| drawing(path)).collect::<Result<_, _>>()?;
     check_time("--modes", modes.flatten())?;
     let integration = run.integration.clone();
@@ -51,9 +52,15 @@ fn drawing(path: &Path) -> Result<(String, String), InputError> {
 }
 
 impl Look {
-    /// The modes, where they are wanted.
-    pub fn modes(&self, machine: &dyn Machine) -> Result<Option<Linearised>, InputError> {
-        self.modes.map(|at| self.linearised(machine, at)).transpose()
+    /// The modes, where they are wanted, or a sentence why there are none: of a machine that has no equilibrium, or does
+    /// not come to the instant, the rest of the page stands.
+    pub fn modes(&self, machine: &dyn Machine) -> Result<Option<Result<Linearised, String>>, InputError> {
+        let Some(at) = self.modes else { return Ok(None) };
+        match self.linearised(machine, at) {
+            Ok(found) => Ok(Some(Ok(found))),
+            Err(fault @ (InputError::Linear(_) | InputError::NotReached { .. })) => Ok(Some(Err(fault.to_string()))),
+            Err(fault) => Err(fault),
+        }
     }
 
     fn linearised(&self, machine: &dyn Machine, at: Option<f64>) -> Result<Linearised, InputError> {

@@ -15,7 +15,7 @@ use crate::files::{console, whole};
 use crate::inputs::{self, Named};
 use crate::live::{Live, Order, changed};
 use crate::machine::{Machine, MachineError};
-use crate::output::{Claimed, OutputError, Places, Table};
+use crate::output::{Claimed, OutputError, PageFiles, Places, Table};
 use crate::page::film::Film;
 use crate::page::{Parameter, Views};
 use crate::parameters::{self, Chosen};
@@ -43,11 +43,11 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     arguments.save_state.iter().try_for_each(|path| whole::probe(path))?;
     let scene = program.scene_called(&model.scene);
     let figures = (!arguments.no_figures).then(|| program.extras.figures(scene.description)).flatten();
-    let places = Places::new(&arguments.out, arguments.csv.as_deref(), figures);
-    let places = match look {
-        Some(look) => places.with_report(&arguments.out, look.files.clone()),
-        None => places,
+    let page = match look {
+        Some(look) => Some(look.files.clone()),
+        None => figures.is_some().then(PageFiles::of_run),
     };
+    let places = Places::new(&arguments.out, arguments.csv.as_deref(), page, figures.unwrap_or_default());
     let live = match look.and_then(|look| look.module.as_ref()) {
         Some(module) => Some(Live {
             module: module.wasm(scene.index)?,
@@ -68,8 +68,16 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
     let rows = sample_times(t0, integration.step, integration.t_end);
     let values = Parameter::all(&chosen.values, |name| program.extras.source(name));
-    let shown = look.zip(views.as_ref()).map(|(look, views)| (look, views, live.as_ref()));
-    let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, (&values, inputs), shown) {
+    let about = scene.summary();
+    let exhibits = Exhibits {
+        description: scene.description,
+        scene: &about,
+        parameters: &values,
+        drawings: look.map_or(&[], |look| &look.drawings),
+        views: &views,
+        live: live.as_ref(),
+    };
+    let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, inputs, &exhibits) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
     };
@@ -110,7 +118,7 @@ pub(super) fn claimed_and_run<C>(
     begin: &Begin,
     look: Option<&Look>,
     claim: impl FnOnce() -> Result<C, InputError>,
-) -> Result<(Outcome, Option<Views>, C), InputError> {
+) -> Result<(Outcome, Views, C), InputError> {
     if look.is_some() {
         request.parts.push(Part::Shown);
     }
@@ -120,7 +128,7 @@ pub(super) fn claimed_and_run<C>(
     let claimed = claim()?;
     let mut outcome = follow(machine, request, from.as_ref())?;
     let description = machine.description();
-    let views = look.map(|_| Film::taken(description, &mut outcome.run).views(modes));
+    let views = look.map_or_else(Views::default, |_| Film::taken(description, &mut outcome.run).views(modes));
     Ok((outcome, views, claimed))
 }
 
@@ -143,27 +151,19 @@ fn report(
     outcome: Outcome,
     rows: &[f64],
     claimed: Claimed,
-    (values, inputs): (&[Parameter], Vec<Named>),
-    shown: Option<(&Look, &Views, Option<&Live>)>,
+    inputs: Vec<Named>,
+    exhibits: &Exhibits<'_>,
 ) -> Result<Vec<OutputError>, MissingColumn> {
     let Outcome { run, failure } = outcome;
     let extras = &program.extras;
     let mut summary = Summary::new(&scene.name, &run, failure, extras.additions(&run)?);
-    summary.changed_parameters = changed(values.iter().map(|parameter| (&parameter.info, parameter.value)));
+    summary.changed_parameters =
+        changed(exhibits.parameters.iter().map(|parameter| (&parameter.info, parameter.value)));
     summary.inputs = inputs;
     let columns = extras.columns(&run);
     let table = Table { samples: &run.at(rows), columns: columns.as_deref() };
     let texts = extras.page(scene.description);
-    let about = scene.summary();
-    let exhibits = shown.map(|(look, views, live)| Exhibits {
-        description: scene.description,
-        scene: &about,
-        parameters: values,
-        drawings: &look.drawings,
-        views,
-        live,
-    });
-    let mut written = claimed.write(&table, &run, &texts, exhibits.as_ref(), &mut summary);
+    let mut written = claimed.write(&table, &run, &texts, exhibits, &mut summary);
     let page = written.page.as_ref().map_or_else(String::new, |page| format!("; open {page} there"));
     let printed = console::print(&format!("{summary}\nwritten: {written}{page}\n"));
     written.faults.extend(printed.err().map(OutputError::from));

@@ -39,7 +39,7 @@ pub type Draw = Arc<dyn Fn(&Recording) -> Result<String, FigureError>>;
 pub struct Figure {
     /// Its file's name, such as `figure_05_crank_angular_momentum.svg`.
     pub file: String,
-    /// Its anchor on the overview page, such as `figure-5`.
+    /// Its anchor on a page, such as `figure-5`.
     pub anchor: String,
     /// What it shows.
     pub title: String,

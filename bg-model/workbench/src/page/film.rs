@@ -53,7 +53,7 @@ impl Film {
     }
 
     /// All that a report shows beside the run, with these modes.
-    pub fn views(&self, modes: Option<Linearised>) -> Views {
+    pub fn views(&self, modes: Option<Result<Linearised, String>>) -> Views {
         let picture = Some(self.picture(picture::svg(self.description)));
         Views { animation: self.animation(), picture, modes }
     }

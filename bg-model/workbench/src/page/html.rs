@@ -6,7 +6,6 @@ use super::charts::Balance;
 use super::report::Report;
 use super::{Linearised, Parameter};
 use crate::markup::{escaped, with_code, write_into};
-use crate::overview::checks;
 use crate::parameters::{number, one_line};
 use crate::summary::Summary;
 
@@ -73,6 +72,15 @@ pub fn picture(page: &mut String, svg: &str) {
     write_into(page, format_args!("{section}{svg}</div></section>\n"));
 }
 
+/// Why there are no modes.
+pub fn no_modes(page: &mut String, why: &str) {
+    let sentence = escaped(why);
+    write_into(
+        page,
+        format_args!("<section id=\"modes\"><h2>Modes</h2><p>There are none: {sentence}.</p></section>\n"),
+    );
+}
+
 /// The modes, each with the button that lets the machine swing in it where there is a machine.
 pub fn modes(page: &mut String, Linearised { modes, place, .. }: &Linearised, can_swing: bool) {
     let place = escaped(place);
@@ -104,6 +112,26 @@ pub fn modes(page: &mut String, Linearised { modes, place, .. }: &Linearised, ca
 /// Five digits.
 fn short(value: f64) -> String {
     number(super::samples::rounded(value, 5)).replace('-', "\u{2212}")
+}
+
+/// The statements with what was measured, as a table below its heading.
+fn checks(page: &mut String, summary: &Summary) {
+    write_into(page, format_args!("<h2>{}</h2>\n<table>\n", escaped(summary.heading())));
+    *page += "<tr><th>Figure</th><th>Statement</th><th>Measured</th><th></th></tr>\n";
+    for check in &summary.checks {
+        let (class, verdict) =
+            if check.holds { ("holds", "\u{2713} holds") } else { ("fails", "\u{2717} does not hold") };
+        write_into(
+            page,
+            format_args!(
+                "<tr><td>{}</td><td>{}</td><td>{}</td><td class=\"{class}\">{verdict}</td></tr>\n",
+                escaped(check.figure),
+                escaped(check.statement),
+                escaped(&check.measured)
+            ),
+        );
+    }
+    *page += "</table>\n";
 }
 
 /// The program's own statements about the run.
@@ -192,6 +220,7 @@ pub fn equations(page: &mut String, equations: &[&str]) {
 
 /// What the page is made with, and the bar that the script fills.
 pub fn foot(page: &mut String, licences: &str) {
-    *page += "<footer><details><summary>Made by bg-workbench with three.js and uPlot</summary>";
+    *page +=
+        "<footer><details><summary>Made by bg-workbench, with three.js where there is a machine, and uPlot</summary>";
     write_into(page, format_args!("<pre>{}</pre></details></footer>\n<div id=\"player\"></div>\n", escaped(licences)));
 }

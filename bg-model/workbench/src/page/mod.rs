@@ -70,8 +70,8 @@ pub struct Views {
     pub animation: Option<Animation>,
     /// The picture of the graph.
     pub picture: Option<Picture>,
-    /// The modes of the linearised machine.
-    pub modes: Option<Linearised>,
+    /// The modes of the linearised machine, or why there are none, in words; `None` where they are not asked for.
+    pub modes: Option<Result<Linearised, String>>,
 }
 
 /// The modes, and the machine where it was linearised.

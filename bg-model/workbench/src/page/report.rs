@@ -3,6 +3,7 @@
 use bg_model::description::Description;
 use bg_model::simulation::Recording;
 
+use super::animation::Animation;
 use super::charts::Balance;
 use super::data::{Bonds, Data};
 use super::html::{self, Drawing};
@@ -22,6 +23,9 @@ use crate::summary::Summary;
 const LOADER: &str = include_str!("../../page/loader.js");
 #[cfg(not(target_arch = "wasm32"))]
 const SCRIPT: &str = include_str!("../../page/dist/report.js");
+/// That of a page without a machine.
+#[cfg(not(target_arch = "wasm32"))]
+const PLAIN: &str = include_str!("../../page/dist/plain.js");
 /// What runs the model of a live page.
 #[cfg(not(target_arch = "wasm32"))]
 const WORKER: &str = include_str!("../../page/dist/worker.js");
@@ -67,7 +71,8 @@ pub struct Report<'a> {
 pub fn page(report: &Report<'_>) -> String {
     let live = report.live;
     let more = live.map(|live| [("worker", WORKER.as_bytes()), ("module", &live.module[..])]);
-    let more: Vec<_> = [("script", SCRIPT.as_bytes())].into_iter().chain(more.into_iter().flatten()).collect();
+    let script = if moving(report.views).is_some() { SCRIPT } else { PLAIN };
+    let more: Vec<_> = [("script", script.as_bytes())].into_iter().chain(more.into_iter().flatten()).collect();
     let texts = |texts: &[(&str, String)]| {
         let texts = texts.iter().map(|(id, text)| (*id, text.as_bytes()));
         let all = texts.chain(more.iter().copied());
@@ -99,9 +104,10 @@ fn put_together(
     start: &str,
     texts: impl FnOnce(&[(&'static str, String)]) -> String,
 ) -> String {
-    let Views { animation, picture, modes } = report.views;
-    let animation = animation.as_ref().filter(|animation| !animation.bodies.is_empty() && !animation.times.is_empty());
-    let at_rest = modes.as_ref().zip(animation).and_then(|(modes, _)| Some((modes, modes.rest.as_ref()?)));
+    let Views { picture, modes, .. } = report.views;
+    let (animation, modes) = (moving(report.views), modes.as_ref());
+    let (modes, no_modes) = (modes.and_then(|of| of.as_ref().ok()), modes.and_then(|of| of.as_ref().err()));
+    let at_rest = modes.zip(animation).and_then(|(modes, _)| Some((modes, modes.rest.as_ref()?)));
     let swings = at_rest.map(|(modes, rest)| Modes::new(&modes.modes, rest));
     let can_swing = swings.is_some();
     let data = Data::new(report.description, report.run, report.rows, animation, swings);
@@ -115,7 +121,7 @@ fn put_together(
         (true, "charts", "Outputs"),
         (picture.is_some(), "picture", "Bond graph"),
         (balance.is_some(), "balance", "Energy balance"),
-        (modes.is_some(), "modes", "Modes"),
+        (modes.is_some() || no_modes.is_some(), "modes", "Modes"),
         (has_checks, "statements", "Statements"),
         (!drawings.is_empty(), "figures", heading),
         (true, "parameters", "Parameters"),
@@ -140,6 +146,9 @@ fn put_together(
     }
     if let Some(linearised) = modes {
         html::modes(&mut page, linearised, can_swing);
+    }
+    if let Some(why) = no_modes {
+        html::no_modes(&mut page, why);
     }
     if has_checks {
         html::statements(&mut page, report.summary);
@@ -167,6 +176,11 @@ fn put_together(
     page += &texts(&[("bonds", bonds), ("drawings", svgs)]);
     write_into(&mut page, format_args!("{start}</body>\n</html>\n"));
     page
+}
+
+/// The machine in motion, where there is one.
+fn moving(views: &Views) -> Option<&Animation> {
+    views.animation.as_ref().filter(|animation| !animation.bodies.is_empty() && !animation.times.is_empty())
 }
 
 /// The program's figures, then the other drawings.

@@ -44,8 +44,8 @@ fn written(run: &Trajectory, rows: &[f64], texts: &Page, description: &'static D
 fn double_pendulum(t_end: f64) -> (Trajectory, Vec<f64>, String) {
     let (run, rows) = machine::run(t_end);
     let animation = Some(machine::animation(&run));
-    let modes =
-        Some(Linearised { modes: machine::modes(), place: "at rest".to_owned(), rest: Some(machine::at_rest()) });
+    let modes = Linearised { modes: machine::modes(), place: "at rest".to_owned(), rest: Some(machine::at_rest()) };
+    let modes = Some(Ok(modes));
     let views = Views { animation, picture: Some(machine::picture(&run.times)), modes };
     let description = DoublePendulum::describe();
     let html = written(&run, &rows, &Plain.page(description), description, &views);
@@ -188,6 +188,8 @@ fn a_browser_shows_plays_and_scrubs() {
     }
     assert_eq!(verdict["at_middle"]["time"], 1.0);
     assert!(number(&verdict["charts"]["drawn"]) >= 2.0, "{verdict}");
+    assert!(verdict["charts"]["drawn"].as_u64() < verdict["charts"]["all"].as_u64(), "{verdict}");
+    assert_eq!(verdict["blank_on_paper"], 0, "on paper all charts are drawn: {verdict}");
     assert!((number(&verdict["charts"]["line"]) - 1.0).abs() < 0.01, "the charts follow the slider: {verdict}");
     assert!((number(&verdict["pressed_to"]) - 0.5).abs() < 0.02, "the time follows a press in a chart: {verdict}");
     assert!(number(&verdict["colours"]) > 50.0, "the machine is drawn: {verdict}");

@@ -179,6 +179,21 @@ fn a_circuit_has_a_page_without_a_machine() {
 }
 
 #[test]
+fn a_machine_without_an_equilibrium_has_a_page_that_says_so_in_place_of_its_modes() {
+    let folder = tempfile::tempdir().unwrap();
+    // A torque turns its crank on and on.
+    let told = text("slider_crank", folder.path(), &["report", "--t-end", "0.05", "--modes", "--out", "o"]);
+    assert!(told.contains("open slider-crank.html there"), "{told}");
+    let html = fs::read_to_string(folder.path().join("o/slider-crank.html")).unwrap();
+    let modes = html.split_once("<section id=\"modes\">").unwrap().1.split_once("</section>").unwrap().0;
+    assert!(
+        modes.contains("<p>There are none: there is no equilibrium near the start: `slider.position_x`"),
+        "{modes}"
+    );
+    assert!(html.contains("href=\"#modes\"") && html.contains("id=\"machine\""));
+}
+
+#[test]
 fn every_example_has_a_page_whose_data_are_whole() {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
     for file in fs::read_dir(examples).unwrap().map(|file| file.unwrap().path()) {

@@ -36,31 +36,39 @@ fn a_run_writes_its_trajectory_and_a_figure_of_each_output() {
     assert_eq!((csv.lines().next(), csv.lines().count()), (Some("t,angle,force_x,force_y,stored,lost"), 102));
     let page = fs::read_to_string(path.join("o/index.html")).unwrap();
     for output in ["angle", "force_x", "force_y", "stored", "lost"] {
-        assert!(page.contains(&format!("src=\"{output}.svg\"")) && path.join(format!("o/{output}.svg")).exists());
+        let is_charted = page.contains(&format!("\"column\":\"{output}\""));
+        assert!(is_charted && path.join(format!("o/{output}.svg")).exists(), "{output}");
     }
+    // Without a machine it has no need of three.js.
+    assert!(!page.contains("id=\"machine\"") && page.len() < 300_000, "{}", page.len());
     let json: serde_json::Value = serde_json::from_slice(&fs::read(path.join("o/summary.json")).unwrap()).unwrap();
     assert_eq!(json["outputs"]["angle"]["unit"], "rad");
     assert_eq!(json["outputs"]["angle"]["start"], 0.5);
 }
 
-/// The largest of samples is below the peak: of the pendulum's force by so much the farther apart the samples are.
+/// The largest of samples is below the peak, by so much the farther apart they are; what is told is the peak.
 #[test]
-fn how_far_samples_are_apart_is_said_beside_ranges() {
+fn ranges_are_those_of_the_solution_and_the_interval_of_samples_is_said_beside_them() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();
     let step = |arguments: &[&str]| {
         let told = text(path, &[&["run", "--no-figures", "--out", "o"], arguments].concat());
         let line = told.lines().find(|line| line.starts_with("samples ")).unwrap();
         let (step, rest) = line["samples ".len()..].trim().strip_prefix("at most ").unwrap().split_once(' ').unwrap();
-        assert_eq!(rest, "s apart; ranges and peaks are those of samples");
+        assert_eq!(rest, "s apart; ranges are those of the solution between them, too");
         let json: serde_json::Value = serde_json::from_slice(&fs::read(path.join("o/summary.json")).unwrap()).unwrap();
         let (step, exact) = (step.parse::<f64>().unwrap(), json["sample_step_s"].as_f64().unwrap());
         assert!((step / exact - 1.0).abs() < 1e-5, "{step} {exact}");
-        step
+        (step, json["outputs"].clone())
     };
     // A 2500th of the run, or the interval of the CSV file where that is shorter.
-    assert_eq!(step(&["--t-end", "1"]), 4e-4);
-    assert_eq!(step(&["--t-end", "0.5", "--step", "1e-4"]), 1e-4);
+    let (usual, outputs) = step(&["--t-end", "0.5"]);
+    let (fine, same) = step(&["--t-end", "0.5", "--step", "1e-4"]);
+    assert_eq!((usual, fine), (2e-4, 1e-4));
+    assert_eq!(outputs, same);
+    let [least, largest] = ["least", "largest"].map(|peak| outputs["force_y"][peak].as_f64().unwrap());
+    let at = outputs["force_y"]["largest_at_s"].as_f64().unwrap();
+    assert!(least < 0.0 + 1e-9 && largest > 100.0 && 0.0 < at && at < 0.5, "{outputs}");
 }
 
 #[test]
