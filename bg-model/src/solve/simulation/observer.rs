@@ -111,10 +111,19 @@ pub trait Observer {
     /// what happens at its end. The rates at both ends are those of these branches.
     fn passed(&mut self, _start: &Point, _end: &Point, _negative: &[bool]) {}
 
-    /// Whether it is told of each step with the states inside of it.
+    /// Whether it is told of steps with the states inside of them.
     fn looks_inside(&self) -> bool {
         false
     }
+
+    /// Whether it is to be told of a step of `h` (s) to `t` (s) and the state `x` with the states inside of it. Asked, of
+    /// those who look inside, where runs are made side by side and these states are not at hand.
+    fn asks(&mut self, _h: f64, _t: f64, _x: &[f64], _negative: &[bool]) -> bool {
+        self.looks_inside()
+    }
+
+    /// The step of `h` (s) to `t` (s) was accepted of which it was asked last and wants to know no more.
+    fn skipped(&mut self, _h: f64, _t: f64) {}
 
     /// The same step as told by [`Observer::passed`], with the states inside, after that and before the samples in it:
     /// for those who look inside.
@@ -159,6 +168,16 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
 
     fn looks_inside(&self) -> bool {
         self.0.looks_inside() || self.1.looks_inside()
+    }
+
+    fn asks(&mut self, h: f64, t: f64, x: &[f64], negative: &[bool]) -> bool {
+        // Both are asked.
+        self.0.asks(h, t, x, negative) | self.1.asks(h, t, x, negative)
+    }
+
+    fn skipped(&mut self, h: f64, t: f64) {
+        self.0.skipped(h, t);
+        self.1.skipped(h, t);
     }
 
     fn inside(&mut self, step: &mut Inside<'_, '_>) {
@@ -210,6 +229,16 @@ impl<O: Observer> Observer for Option<O> {
         self.as_ref().is_some_and(O::looks_inside)
     }
 
+    fn asks(&mut self, h: f64, t: f64, x: &[f64], negative: &[bool]) -> bool {
+        self.as_mut().is_some_and(|observer| observer.asks(h, t, x, negative))
+    }
+
+    fn skipped(&mut self, h: f64, t: f64) {
+        if let Some(observer) = self {
+            observer.skipped(h, t);
+        }
+    }
+
     fn inside(&mut self, step: &mut Inside<'_, '_>) {
         if let Some(observer) = self {
             observer.inside(step);
@@ -255,6 +284,14 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 
     fn looks_inside(&self) -> bool {
         (**self).looks_inside()
+    }
+
+    fn asks(&mut self, h: f64, t: f64, x: &[f64], negative: &[bool]) -> bool {
+        (**self).asks(h, t, x, negative)
+    }
+
+    fn skipped(&mut self, h: f64, t: f64) {
+        (**self).skipped(h, t);
     }
 
     fn inside(&mut self, step: &mut Inside<'_, '_>) {

@@ -3,9 +3,11 @@
 //! In: the steps of a run, with the states inside of them. Out: for each output two values with their instants, over the
 //! whole run and from an instant on. They depend on the steps alone, not on the samples.
 //!
-//! Method: outputs and their slopes at the ends of each step give a cubic. Where that leads beyond what is known so
-//! far, or where the middle is off the cubic, the step's dense output is searched. A step of a method of higher order
-//! is longer beside what happens in it, and looked at in several parts. At an event both sides count.
+//! Method: the outputs at the end of each step and at the two ends before show how they bend. Where an output may turn in
+//! the step, and beyond what is known so far, its slopes at both ends give a cubic. Where that leads beyond what is known
+//! as well, or where the middle is off the cubic, the step's dense output is searched. So most steps take one evaluation
+//! of the outputs. A step of a method of higher order is longer beside what happens in it, and looked at in several parts.
+//! At an event both sides count.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -67,13 +69,6 @@ impl Peaks {
     }
 }
 
-/// Outputs at an instant with their derivatives by time.
-#[derive(Clone, Debug, Default)]
-struct Knot {
-    values: Vec<f64>,
-    slopes: Vec<f64>,
-}
-
 /// Over which time peaks are looked for.
 #[derive(Clone, Debug)]
 struct Window {
@@ -105,15 +100,47 @@ fn take(windows: &mut [Window], t: f64, values: &[f64]) {
 pub struct PeakMonitor<'a> {
     model: &'a dyn Machine,
     windows: Vec<Window>,
-    /// The start and the end of the part that is looked at.
-    from: Knot,
-    to: Knot,
+    past: Past,
+    /// The outputs at the end of the part that is looked at, and which of them may turn in it beyond what is known.
+    to: Vec<f64>,
+    may_turn: Vec<bool>,
+    /// Slopes at both ends of a part, and outputs in its middle.
+    slopes: [Vec<f64>; 2],
     middle: Vec<f64>,
-    /// Whether `to` is the start of the next step.
-    is_known: bool,
     /// Room for a state and for outputs.
     x: Vec<f64>,
     row: Vec<f64>,
+}
+
+/// The outputs at the last ends of parts.
+#[derive(Clone)]
+struct Past {
+    /// How many of them are known since the last event: 0, 1 or 2.
+    known: usize,
+    /// At the start of the next part.
+    values: Vec<f64>,
+    /// At the end before it, and how long ago that is, s.
+    before: Vec<f64>,
+    h: f64,
+}
+
+impl Past {
+    /// The part has ended, of `h` (s), with these values, which are those before it then.
+    fn advance(&mut self, h: f64, values: &mut Vec<f64>) {
+        core::mem::swap(&mut self.before, &mut self.values);
+        core::mem::swap(&mut self.values, values);
+        self.h = h;
+        self.known = 2;
+    }
+
+    /// By how much output `index` bends in a part of `h` (s) that changes it by `change`: its change less that which the
+    /// part before would have led to.
+    fn bend(&self, index: usize, h: f64, change: f64) -> f64 {
+        if self.known < 2 {
+            return change.abs();
+        }
+        (change - (self.values[index] - self.before[index]) * (h / self.h)).abs()
+    }
 }
 
 /// The part of a step from which on and up to which it is looked at.
@@ -123,6 +150,10 @@ type Part = [f64; 2];
 const DIFFERENCE: f64 = 1e-6;
 /// The order up to which a step is one part: an oscillation makes less than half a turn in it where errors are small.
 const ORDER_OF_ONE: f64 = 8.0;
+/// A parabola turns in a part that changes it by less than half of its bend, and leads beyond the ends by an eighth of that
+/// at most. Four times as much is looked at.
+const TURN: f64 = 2.0;
+const BEYOND: f64 = 0.5;
 /// How far the middle may be off the cubic, in parts of the range in the step, for the cubic to be the course.
 const RESOLVED: f64 = 0.02;
 /// In how many pieces a part is searched that the cubic does not show.
@@ -133,17 +164,18 @@ impl<'a> PeakMonitor<'a> {
     #[must_use]
     pub fn new(model: &'a dyn Machine, settled: Option<f64>) -> Self {
         let outputs = model.description().outputs.len();
-        let knot = || Knot { values: vec![0.0; outputs], slopes: vec![0.0; outputs] };
+        let row = || vec![0.0; outputs];
         let window = |from: f64| Window { from, found: vec![None; outputs] };
         Self {
             model,
             windows: core::iter::once(f64::NEG_INFINITY).chain(settled).map(window).collect(),
-            from: knot(),
-            to: knot(),
-            middle: vec![0.0; outputs],
-            is_known: false,
+            past: Past { known: 0, values: row(), before: row(), h: 0.0 },
+            to: row(),
+            may_turn: vec![false; outputs],
+            slopes: [row(), row()],
+            middle: row(),
             x: vec![0.0; model.states()],
-            row: vec![0.0; outputs],
+            row: row(),
         }
     }
 
@@ -159,31 +191,59 @@ impl<'a> PeakMonitor<'a> {
         self.windows.get(1).map_or(&[], |window| &window.found)
     }
 
-    /// Evaluates outputs and slopes at the part `theta` of a step into `knot`; the slopes by a difference to a part
+    /// Whether an output may turn in a part of `h` (s) that ends at `t` (s) in `to`, beyond what is known; marks which do.
+    fn may_turn(&mut self, t: f64, h: f64) -> bool {
+        let Self { windows, past, to, may_turn, .. } = self;
+        let mut any = false;
+        for (index, marked) in may_turn.iter_mut().enumerate() {
+            let [from, to] = [past.values[index], to[index]];
+            let bend = past.bend(index, h, to - from);
+            let (least, largest) = (from.min(to) - BEYOND * bend, from.max(to) + BEYOND * bend);
+            let is_beyond = |window: &Window| {
+                let leads = |known: Peaks| {
+                    let margin = known.margin();
+                    least < known.least.value - margin || largest > known.largest.value + margin
+                };
+                t >= window.from && window.found[index].is_none_or(leads)
+            };
+            *marked = (to - from).abs() <= TURN * bend && windows.iter().any(is_beyond);
+            any |= *marked;
+        }
+        any
+    }
+
+    /// The part of `h` (s) has ended at `t` (s) in `to`.
+    fn end(&mut self, t: f64, h: f64) {
+        take(&mut self.windows, t, &self.to);
+        self.past.advance(h, &mut self.to);
+    }
+
+    /// Evaluates the slopes of the outputs, which are `values`, at the part `theta` of a step: by a difference to a part
     /// before, or after at the start.
-    fn look(model: &dyn Machine, step: &mut Inside<'_, '_>, theta: f64, knot: &mut Knot, x: &mut [f64]) {
+    fn slope(&mut self, step: &mut Inside<'_, '_>, theta: f64, is_end: bool) {
+        let Self { model, past, to, slopes, x, .. } = self;
         let beside = if theta > 0.0 { -DIFFERENCE } else { DIFFERENCE };
-        let t = step.state(theta, x);
-        model.outputs(t, x, step.negative(), &mut knot.values);
         let t = if theta == 0.0 || theta == 1.0 {
             step.along_rate(theta == 1.0, beside, x)
         } else {
             step.state(theta + beside, x)
         };
-        model.outputs(t, x, step.negative(), &mut knot.slopes);
+        let (slopes, values) = (&mut slopes[usize::from(is_end)], if is_end { to } else { &past.values });
+        model.outputs(t, x, step.negative(), slopes);
         let h = step.h() * beside;
-        knot.slopes.iter_mut().zip(&knot.values).for_each(|(slope, value)| *slope = (*slope - value) / h);
+        slopes.iter_mut().zip(values).for_each(|(slope, value)| *slope = (*slope - value) / h);
     }
 
-    /// Looks at a part of a step; its start is known.
-    fn pass(&mut self, step: &mut Inside<'_, '_>, part: Part, is_short: bool) {
-        let Self { model, windows, from, to, middle, x, row, .. } = self;
+    /// Looks for what is beyond the known inside of a part of a step, of the outputs that may turn.
+    fn search(&mut self, step: &mut Inside<'_, '_>, part: Part, is_short: bool) {
         let [low, high] = part;
-        Self::look(*model, step, high, to, x);
+        self.slope(step, low, false);
+        self.slope(step, high, true);
+        let Self { model, windows, past, to, may_turn, slopes, middle, x, row } = self;
         let half = 0.5 * (low + high);
         let t_half = if is_short { step.cubic(half, x) } else { step.state(half, x) };
         model.outputs(t_half, x, step.negative(), middle);
-        take(windows, step.time(high), &to.values);
+        take(windows, step.time(high), to);
         let h = step.h() * (high - low);
         for place in 0..windows.len() {
             let opens = step.part_at(windows[place].from);
@@ -197,11 +257,11 @@ impl<'a> PeakMonitor<'a> {
                 windows[place].take(t, row);
             }
             let part = [low.max(opens), high];
-            for index in 0..row.len() {
+            for index in (0..row.len()).filter(|&index| may_turn[index]) {
                 let Some(known) = windows[place].found[index] else { continue };
                 let course = Course {
-                    values: [from.values[index], to.values[index]],
-                    slopes: [from.slopes[index], to.slopes[index]],
+                    values: [past.values[index], to[index]],
+                    slopes: [slopes[0][index], slopes[1][index]],
                     middle: middle[index],
                     h,
                 };
@@ -299,28 +359,42 @@ impl Observer for PeakMonitor<'_> {
         true
     }
 
-    fn inside(&mut self, step: &mut Inside<'_, '_>) {
-        if self.is_known {
-            core::mem::swap(&mut self.from, &mut self.to);
-        } else {
-            Self::look(self.model, step, 0.0, &mut self.from, &mut self.x);
-            take(&mut self.windows, step.time(0.0), &self.from.values);
+    fn asks(&mut self, h: f64, t: f64, x: &[f64], negative: &[bool]) -> bool {
+        if self.past.known == 0 {
+            return true;
         }
-        self.is_known = true;
+        self.model.outputs(t, x, negative, &mut self.to);
+        self.may_turn(t, h)
+    }
+
+    fn skipped(&mut self, h: f64, t: f64) {
+        self.end(t, h);
+    }
+
+    fn inside(&mut self, step: &mut Inside<'_, '_>) {
+        if self.past.known == 0 {
+            let t = step.state(0.0, &mut self.x);
+            self.model.outputs(t, &self.x, step.negative(), &mut self.past.values);
+            take(&mut self.windows, t, &self.past.values);
+            self.past.known = 1;
+        }
         let parts = step.order().map_or(1.0, |order| libm::ceil(order / ORDER_OF_ONE).max(1.0));
+        let h = step.h() / parts;
         let mut low = 0.0;
         for k in 1..=(parts as u32) {
-            if k > 1 {
-                core::mem::swap(&mut self.from, &mut self.to);
-            }
             let high = f64::from(k) / parts;
-            self.pass(step, [low, high], parts == 1.0);
+            let t = step.state(high, &mut self.x);
+            self.model.outputs(t, &self.x, step.negative(), &mut self.to);
+            if self.may_turn(t, h) {
+                self.search(step, [low, high], parts == 1.0);
+            }
+            self.end(t, h);
             low = high;
         }
     }
 
     fn switched(&mut self, switching: &Switching) {
-        self.is_known = false;
+        self.past.known = 0;
         let Switching { after, negative_after, .. } = switching;
         self.model.outputs(after.t, after.x.as_slice(), negative_after, &mut self.row);
         take(&mut self.windows, after.t, &self.row);

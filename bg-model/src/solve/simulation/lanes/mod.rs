@@ -223,7 +223,13 @@ impl<'a, O: Observer> Lane<'a, O> {
         self.run.controller.accept_by(t, h, judgement);
         self.run.stepper.statistics.rate_evaluations += self.method().rates() + 1;
         // Of a plain step the group alone keeps what the guards are.
-        let is_quiet = !self.is_looked_at(t)
+        let looks = self.observer.looks_inside();
+        let asks = looks && {
+            self.take_end(group, place, t);
+            let Run { stepper, .. } = &self.run;
+            self.observer.asks(h, t, stepper.end.x.as_slice(), &stepper.negative)
+        };
+        let is_quiet = !(asks || self.run.sampling.is_due(t))
             && (is_clear && self.run.monitor.is_plain() || {
                 let (end, middle) = group.guards(place);
                 let Run { monitor, stepper, .. } = &mut self.run;
@@ -238,6 +244,9 @@ impl<'a, O: Observer> Lane<'a, O> {
         }
         self.run.stepper.statistics.guard_evaluations += self.guards;
         self.run.faulty = None;
+        if looks {
+            self.observer.skipped(h, t);
+        }
         self.take_end(group, place, t);
         self.run.stepper.h = h;
         if self.run.sizes.follow(&mut self.run.stepper) {
