@@ -68,22 +68,18 @@ impl Data<'_> {
 
     /// The largest change of any component of a link's z axis since the start, and of its z coordinate.
     fn out_of_plane(&self, link: u8) -> Result<(f64, f64), MissingColumn> {
-        let mut axis = 0.0;
-        for row in 1..=3 {
-            axis = f64::max(axis, largest_change(self.values(&format!("R{link}_{row}3"))?));
-        }
-        Ok((axis, largest_change(self.values(&format!("C{link}_z"))?)))
+        let [x, y, z] = [1, 2, 3].map(|row| self.values(&format!("R{link}_{row}3")).map(largest_change));
+        Ok((largest(&[x?, y?, z?]), largest_change(self.values(&format!("C{link}_z"))?)))
     }
 
     fn crank_vectors(&self) -> Measured {
-        let mut deviation: f64 = 0.0;
+        let mut deviations = Vec::new();
         for column in [1, 2] {
             let [x, y, z] = [1, 2, 3].map(|row| self.values(&format!("R2_{row}{column}")));
             let (x, y, z) = (x?, y?, z?);
-            for k in 0..x.len() {
-                deviation = deviation.max((x[k].hypot(y[k]) - 1.0).abs()).max(z[k].abs());
-            }
+            deviations.extend(x.iter().zip(y).map(|(x, y)| x.hypot(*y) - 1.0).chain(z.iter().copied()));
         }
+        let deviation = largest(&deviations);
         let turns = span(&self.angle(2)?) / TAU;
         Ok(Check {
             figure: "Fig. 4",
@@ -105,7 +101,7 @@ impl Data<'_> {
 
     fn crank_angular_momentum(&self) -> Measured {
         let [x, y, z] = AXES.map(|axis| self.values(&format!("h2_{axis}")));
-        let across = largest(x?).max(largest(y?));
+        let across = largest(&[largest(x?), largest(y?)]);
         let along = span(z?);
         Ok(Check {
             figure: "Fig. 5",
@@ -119,7 +115,7 @@ impl Data<'_> {
         let (x, y) = (self.values("C2_x")?, self.values("C2_y")?);
         let radii: Vec<f64> = x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect();
         let mean = radii.iter().sum::<f64>() / radii.len() as f64;
-        let deviation = radii.iter().map(|radius| (radius - mean).abs()).fold(0.0, f64::max);
+        let deviation = largest(&radii.iter().map(|radius| radius - mean).collect::<Vec<_>>());
         let turns = span(&continued(y.iter().zip(x).map(|(y, x)| y.atan2(*x)))) / TAU;
         Ok(Check {
             figure: "Fig. 7",
@@ -134,7 +130,7 @@ impl Data<'_> {
         let start = angle[0];
         let peak = |turn: f64| {
             let inside = |angle: f64| (turn..turn + 1.0).contains(&((angle - start).abs() / TAU));
-            h.iter().zip(&angle).filter(|(_, angle)| inside(**angle)).map(|(h, _)| h.abs()).fold(0.0, f64::max)
+            largest(&h.iter().zip(&angle).filter(|(_, angle)| inside(**angle)).map(|(h, _)| *h).collect::<Vec<_>>())
         };
         let (first, second) = (peak(0.0), peak(1.0));
         Ok(Check {
@@ -193,7 +189,7 @@ impl Data<'_> {
         let late = &y[y.len() / 2..];
         let descent = y[0] - late.iter().sum::<f64>() / late.len() as f64;
         let swing = span(&frame);
-        let apart = frame.iter().zip(&guide).map(|(frame, guide)| (frame - guide).abs()).fold(0.0, f64::max);
+        let apart = largest(&frame.iter().zip(&guide).map(|(frame, guide)| frame - guide).collect::<Vec<_>>());
         Ok(Check {
             figure: "Fig. 14, 15",
             statement: "The frame moves downward with the guide.",
@@ -241,21 +237,22 @@ fn small(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value:.1e}") }
 }
 
-/// The largest value without its sign.
+/// The largest value without its sign; not a number where one is none, so that no statement holds of it.
 fn largest(values: &[f64]) -> f64 {
-    values.iter().map(|value| value.abs()).fold(0.0, f64::max)
+    let worse = |most: f64, value: f64| if most >= value || most.is_nan() { most } else { value };
+    values.iter().map(|value| value.abs()).fold(0.0, worse)
 }
 
-/// The largest difference from the first value.
+/// The largest difference from the first value; not a number where one value is none.
 fn largest_change(values: &[f64]) -> f64 {
-    values.iter().map(|value| (value - values[0]).abs()).fold(0.0, f64::max)
+    largest(&values.iter().map(|value| value - values[0]).collect::<Vec<_>>())
 }
 
-/// The largest value less the smallest.
+/// The largest value less the smallest; not a number where one value is none.
 fn span(values: &[f64]) -> f64 {
-    let (low, high) =
-        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)));
-    high - low
+    let changes = values.iter().map(|value| value - values[0]);
+    let (below, above): (Vec<f64>, Vec<f64>) = changes.partition(|change| *change < 0.0);
+    largest(&below) + largest(&above)
 }
 
 /// How often values, of which there is one at least, turn back by more than `threshold`, which has their unit.
@@ -279,4 +276,22 @@ pub fn reversals(values: &[f64], threshold: f64) -> usize {
         }
     }
     count
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_statement_holds_of_what_is_no_number() {
+        assert_eq!(
+            (largest(&[1.0, -3.0]), largest_change(&[1.0, -3.0, 2.0]), span(&[1.0, -3.0, 2.0])),
+            (3.0, 4.0, 5.0)
+        );
+        for place in 0..3 {
+            let mut values = [1.0, -3.0, 2.0];
+            values[place] = f64::NAN;
+            assert!([largest(&values), largest_change(&values), span(&values)].iter().all(|of| of.is_nan()), "{place}");
+        }
+    }
 }

@@ -43,6 +43,7 @@ mod power_is_balanced {
 fn same_numbers(a: &Record, b: &Record, outputs: &[&str]) {
     for name in outputs {
         let (left, right) = (a.series(name), b.series(name));
+        assert!(left.iter().chain(&right).all(|value| value.is_finite()), "{name}");
         let apart = left.iter().zip(&right).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         println!("{name}: {apart:.1e}{}", if left == right { ", to the bit" } else { "" });
         assert!(apart <= 1e-11 * (1.0 + a.largest(name)), "{name}: {apart:e}");

@@ -19,6 +19,7 @@ use crate::model::description::{StateInfo, StateKind};
 use crate::model::dynamics::{Machine, branches};
 use crate::model::holding::{Held, Slip, Slipping, Stops};
 use crate::model::reactions::{Collision, impacts_of};
+use crate::model::scalar::double::worse;
 use crate::model::system::decide_by_sign;
 
 /// The part of the machine's size that rounding may leave of what should be zero, where a run starts.
@@ -229,7 +230,7 @@ impl<'a> Standing<'a> {
         let products =
             self.start.iter().flat_map(|start| kept.iter().map(move |kept| value(kept, x) - value(kept, start)));
         let determinant = entries.determinant(x).map(|determinant| determinant - 1.0);
-        products.chain(determinant).map(f64::abs).fold(0.0, |off, other| if other <= off { off } else { other })
+        products.chain(determinant).map(f64::abs).fold(0.0, worse)
     }
 
     /// Checks what rigid joints hold, and closes it.
@@ -381,7 +382,7 @@ impl Limits {
     fn excess(&self, values: &[f64]) -> f64 {
         let parts = values.iter().zip(&self.sizes).filter(|(value, _)| **value != 0.0);
         let parts = parts.map(|(value, size)| value.abs() / (EXACT * size).max(f64::MIN_POSITIVE));
-        parts.fold(0.0, |most, part| if part <= most { most } else { part })
+        parts.fold(0.0, worse)
     }
 
     /// Refuses values that are more than is allowed; `after` are those that a projection leaves of them.

@@ -174,14 +174,15 @@ impl Stood {
     pub fn drifts(&self, rtol: f64) -> Result<bool, Fault> {
         let mut x = self.x.clone();
         self.model.project(self.t, self.branches(), &mut x);
-        let parts = x.iter().zip(&self.x).zip(&self.size).map(|((after, x), size)| (after - x) / x.abs().max(*size));
-        let drift = parts.fold(0.0, |drift, part| part.abs().max(drift));
+        let mut parts =
+            x.iter().zip(&self.x).zip(&self.size).map(|((after, x), size)| (after - x) / x.abs().max(*size));
+        let is_off = parts.any(|part| part.is_nan() || part.abs() > rtol);
         // What no projection moves, such as an orientation of zeros, is off as well.
         self.standing(DRIFT).rotated(&self.x).map_err(misplaced)?;
-        if drift > rtol {
+        if is_off {
             self.standing(DRIFT).closed(&self.x, self.negative.as_deref()).map_err(misplaced)?;
         }
-        Ok(drift > rtol)
+        Ok(is_off)
     }
 
     /// An event: projects the state, lets it jump where something hits a stop, finds the branches that hold from here

@@ -43,6 +43,12 @@ pub fn power<S: Scalar>(of: S, exponent: u32) -> S {
     result
 }
 
+/// The larger number; not a number where one of them is none, which a comparison would pass over.
+#[inline(always)]
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
+    if a >= b || a.is_nan() { a } else { b }
+}
+
 /// The first number that is not finite, with its place.
 #[inline(never)]
 pub(crate) fn first_not_finite(numbers: &[f64]) -> Option<(usize, f64)> {

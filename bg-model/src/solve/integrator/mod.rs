@@ -21,6 +21,8 @@ mod hermite;
 #[cfg(feature = "std")]
 mod lanes;
 mod linear;
+#[cfg(test)]
+mod no_number;
 mod nystrom;
 mod partitioned;
 mod radau;

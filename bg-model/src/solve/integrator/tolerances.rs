@@ -7,7 +7,7 @@ use alloc::vec::Vec;
 
 use super::{Flow, PointRef};
 use crate::model::scalar::Scalar;
-use crate::model::scalar::double::fraction;
+use crate::model::scalar::double::{fraction, worse};
 
 /// The error of a step that is allowed in state i: `absolute_i + relative * |x_i|`, with the value at the start of the
 /// step.
@@ -155,34 +155,36 @@ pub(crate) fn smaller<S: Scalar>(a: S, b: S) -> S {
     -((-a).larger(-b))
 }
 
-/// The largest of some numbers that are not negative; a NaN is passed over, it shows in the state itself.
+/// The largest of some numbers that are not negative; not a number where one of them is none.
 ///
 /// The maximum norm, and not a mean, so that states which repeat others or stay constant do not change the steps.
 #[inline(always)]
 pub(super) fn largest<S: Scalar>(of: &[S]) -> S {
     // Several maxima side by side, for none to wait for another; of all orders the result is the same.
     const SIDE_BY_SIDE: usize = 8;
+    // A part of the sum that is no more than the largest, of as many states as memory holds.
+    const PART: f64 = f64::EPSILON;
     let Some(nothing) = of.first().map(|first| first.alike(0.0)) else { return S::from_f64(0.0) };
-    let mut maxima = [nothing; SIDE_BY_SIDE];
+    // A maximum passes over what is no number; a sum does not.
+    let (mut maxima, mut sums) = ([nothing; SIDE_BY_SIDE], [nothing; SIDE_BY_SIDE]);
     let (groups, rest) = of.as_chunks::<SIDE_BY_SIDE>();
-    for group in groups {
-        for (maximum, value) in maxima.iter_mut().zip(group) {
+    for group in groups.iter().map(|group| &group[..]).chain([rest]) {
+        for ((maximum, sum), value) in maxima.iter_mut().zip(&mut sums).zip(group) {
             *maximum = value.larger(*maximum);
+            *sum = *sum + *value;
         }
     }
-    for (maximum, value) in maxima.iter_mut().zip(rest) {
-        *maximum = value.larger(*maximum);
-    }
-    let mut largest = nothing;
-    for maximum in &maxima {
+    let (mut largest, mut all) = (nothing, nothing);
+    for (maximum, sum) in maxima.iter().zip(&sums) {
         largest = maximum.larger(largest);
+        all = all + *sum;
     }
-    largest
+    largest.larger(all.times(PART))
 }
 
 /// The same of so many numbers that are calculated one after the other.
 pub(super) fn largest_of(count: usize, value: impl Fn(usize) -> f64) -> f64 {
-    (0..count).fold(0.0, |largest, i| value(i).larger(largest))
+    (0..count).fold(0.0, |largest, i| worse(value(i), largest))
 }
 
 /// What [`displaced`] works with: a state, its rate, and the result. Each has a number for each state.
@@ -218,9 +220,10 @@ pub(crate) fn displaced(
     }
 }
 
-/// The index below `count` with the largest error, of equal ones the first.
+/// The index below `count` with the largest error, of equal ones the first; the first that is no number where one is.
 pub(super) fn index_of_largest(count: usize, error: impl Fn(usize) -> f64) -> usize {
-    (0..count).fold(0, |largest, i| if error(i) > error(largest) { i } else { largest })
+    let is_worse = |i: usize, than: usize| error(i) > error(than) || error(i).is_nan() && !error(than).is_nan();
+    (0..count).fold(0, |largest, i| if is_worse(i, largest) { i } else { largest })
 }
 
 #[cfg(test)]
@@ -235,5 +238,27 @@ mod tests {
         let scale = Scale { growth: 1e6, ..scale };
         assert_eq!(scale.allowed_between(0, 10.0, 1e60), 2e6);
         assert_eq!(scale.norm(&[4.0, 1.0], &[10.0, 20.0]), 2.0);
+    }
+
+    /// One that is none, at each place of vectors and of what is left over beside them, is seen in every norm.
+    #[test]
+    fn a_norm_with_a_number_that_is_none_is_none() {
+        for count in 1..20 {
+            let numbers: Vec<f64> = (0..count).map(|i| f64::from(i % 7) + 0.5).collect();
+            let expected = numbers.iter().copied().fold(0.0, f64::max);
+            let scale = Scale::new(&Tolerances::new(0.0, 1.0), numbers.len());
+            assert_eq!((largest(&numbers), scale.norm(&numbers, &numbers)), (expected, expected));
+            for place in 0..numbers.len() {
+                let mut with_none = numbers.clone();
+                with_none[place] = -f64::NAN;
+                assert!(largest(&with_none).is_nan(), "{place} of {count}");
+                assert!(scale.norm(&with_none, &numbers).is_nan(), "{place} of {count}");
+                with_none[place] = f64::INFINITY;
+                assert_eq!(largest(&with_none), f64::INFINITY);
+            }
+        }
+        assert_eq!(largest(&[0.0; 9]), 0.0);
+        assert_eq!(largest(&[1e308; 9]), f64::INFINITY);
+        assert_eq!(largest(&[1e300; 9]), 1e300);
     }
 }

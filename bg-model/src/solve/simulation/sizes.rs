@@ -26,6 +26,7 @@ use super::rounding::is_exposed;
 use crate::model::description::StateKind;
 use crate::model::dynamics::{Dynamics, Typed, branches};
 use crate::model::reactions::Moved;
+use crate::model::scalar::double::worse;
 use crate::model::system::System;
 use crate::solve::integrator::{Absolute, Dop853, Point, Scale, Tolerances, displaced, rounding};
 use crate::solve::stepper::Stepper;
@@ -286,7 +287,9 @@ impl SizeMonitor {
         const TRIES: usize = 100;
         const SHORTER: [f64; 2] = [1e-6, 0.5];
         let weights = weights(stepper);
-        let norm = |rate: &DVector<f64>| rate.component_mul(&weights).amax();
+        let norm = |rate: &DVector<f64>| {
+            rate.iter().zip(&weights).fold(0.0, |most, (rate, weight)| worse((rate * weight).abs(), most))
+        };
         let start = stepper.start.clone();
         let mut h = longest;
         for _ in 0..TRIES {

@@ -107,7 +107,8 @@ fn rotations(a: &Recording, b: &Recording, matrix: &[OutputInfo]) -> Result<Vec<
         }
     }
     // Frobenius norm of A - B: 2 sqrt 2 sin(angle / 2).
-    Ok(squares.iter().map(|square| 2.0 * (square.sqrt() / (2.0 * SQRT_2)).min(1.0).asin()).collect())
+    // `clamp` keeps what is no number, `min` does not.
+    Ok(squares.iter().map(|square| 2.0 * (square.sqrt() / (2.0 * SQRT_2)).clamp(0.0, 1.0).asin()).collect())
 }
 
 fn measure(errors: &[f64]) -> Option<Measure> {
@@ -157,6 +158,8 @@ mod tests {
             assert!((poses.largest - angle).abs() < 1e-15 + 1e-8 * angle, "{poses:?}");
             assert_eq!((errors.momenta, errors.forces), (None, None));
         }
+        let poses = Errors::between(&turned(f64::NAN), &turned(0.3), &outputs).unwrap().poses.unwrap();
+        assert!(poses.largest.is_nan() && poses.l2.is_nan(), "{poses:?}");
     }
 
     #[test]

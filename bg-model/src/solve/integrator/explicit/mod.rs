@@ -35,6 +35,7 @@ use super::tolerances::{index_of_largest, largest_of, smaller};
 use super::vectors::{Vectorised, attempt_in};
 use super::{Arch, Flow, Method, PointRef, Scale, StepControl};
 use crate::model::scalar::Scalar;
+use crate::model::scalar::double::worse;
 #[cfg(feature = "std")]
 pub(super) use lanes::ExplicitInLanes;
 pub(super) use stages::{Complete, Stages};
@@ -193,7 +194,7 @@ fn norm<T: Tableau, S: Scalar>(h: S, [first, second]: [S; 2]) -> S {
 pub(crate) fn both<S: Scalar>(scale: S, first: S, second: S) -> S {
     // Of numbers so large that their squares are finite: a step with a larger error is as wrong.
     let most = scale.alike(1e150);
-    let (first, second) = (smaller(first, most), smaller(second, most));
+    let (first, second) = (smaller(most, first), smaller(most, second));
     let both = first * first + second.times(0.01) * second;
     // The quotient is zero where both are; no root of another number is as small.
     scale * first * first / both.alike(f64::MIN_POSITIVE).larger(both.sqrt())
@@ -236,7 +237,7 @@ impl<T: Tableau> Method for Explicit<T> {
         stages.write(T::LATE, 1.0, difference);
         let error = |i: usize| (difference[i] / scale.allowed_between(i, start.x[i], end[i])).abs();
         let late = h.abs() * largest_of(end.len(), error);
-        if late > norm { late } else { norm }
+        worse(late, norm)
     }
 
     fn error_after(
@@ -261,7 +262,8 @@ impl<T: Tableau> Method for Explicit<T> {
             return Some(first);
         }
         self.stages.set_stage(T::END, |rate| flow.rate(start.t + h, end, rate));
-        Some(first.max(self.left(start, scale, end, project, |stages, i| h * stages.combine(T::LATE, i))))
+        let late = self.left(start, scale, end, project, |stages, i| h * stages.combine(T::LATE, i));
+        Some(worse(late, first))
     }
 
     fn advance(&mut self) {
