@@ -1,10 +1,11 @@
-//! The colours of the picture.
+//! The colours and letters of the picture.
 //!
-//! In: nothing. Out: a style sheet. Each colour is a variable of the page, such as `--bond-graph-ink`, with a value
-//! for light and one for dark surroundings where the page sets none. Readers that know no variables take the line
-//! before.
+//! In: nothing. Out: attributes of what is drawn, and a style sheet. The attributes alone are the whole picture on light
+//! paper, for readers that know no style sheets. The sheet makes each colour a variable of the page around, such as
+//! `--bond-graph-ink`, with a value for light and one for dark surroundings where the page sets none. All of it is in
+//! `@supports` and `@media`, which a reader that knows no variables skips: a rule with one would be black to it.
 
-/// Name, light, dark.
+/// Name, light, dark. The light ones are all different: by them the style sheet finds what has which colour.
 const COLOURS: [(&str, &str, &str); 12] = [
     ("paper", "#ffffff", "#0f1419"),
     ("ink", "#1c2733", "#e3e9ef"),
@@ -20,64 +21,64 @@ const COLOURS: [(&str, &str, &str); 12] = [
     ("hover", "#c8401a", "#ff9a5a"),
 ];
 
-/// What has which colour: selector, property, colour.
-const RULES: [(&str, &str, &str); 21] = [
-    (".paper", "fill", "paper"),
-    ("text", "fill", "ink"),
-    (".name,.word", "fill", "faint"),
-    (".frame", "fill", "frame"),
-    (".frame", "stroke", "line"),
-    (".box", "fill", "node"),
-    (".storage .box", "fill", "storage"),
-    (".resistor .box", "fill", "resistor"),
-    (".part .box", "fill", "frame"),
-    (".part .box", "stroke", "line"),
-    (".multiplier .box", "fill", "multiplier"),
-    (".derivative .box", "fill", "derivative"),
-    (".part .kind", "fill", "faint"),
-    (".part .name", "fill", "ink"),
-    (".multiplier .name", "fill", "ink"),
-    (".derivative .name", "fill", "ink"),
-    (".line", "stroke", "bond"),
-    (".arrow", "stroke", "bond"),
-    (".stroke", "stroke", "bond"),
-    (".bond:hover .line,.bond:hover .arrow,.bond:hover .stroke", "stroke", "hover"),
-    (".node:hover .box,.part:hover .box", "stroke", "hover"),
-];
+/// The letters of the whole picture, for its root.
+pub(crate) const LETTERS: &str = "font-family=\"sans-serif\" text-anchor=\"middle\"";
 
-/// What has no colour.
-const SHAPES: &str = "\
+/// What is no picture without variables: its size in a page, letters of the system, what the pointer is on.
+const IN_PAGES: &str = "\
 .bond-graph{max-width:100%;height:auto}\
-.bond-graph text{text-anchor:middle;\
-font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,\"DejaVu Sans\",sans-serif}\
-.bond-graph .kind{font-size:13px;font-weight:bold}\
-.bond-graph .name,.bond-graph .key{font-size:10px}\
-.bond-graph .part .name{font-size:13px;font-weight:bold}\
-.bond-graph .part .kind{font-size:10px;font-weight:normal}\
-.bond-graph .title{font-size:12px;font-weight:bold;text-anchor:start}\
-.bond-graph .word{font-weight:normal}\
-.bond-graph .key{text-anchor:start}\
-.bond-graph .line,.bond-graph .arrow,.bond-graph .stroke,.bond-graph .hit{fill:none}\
-.bond-graph .line{stroke-width:1.3;stroke-linejoin:round}\
-.bond-graph .arrow{stroke-width:1.3;stroke-linecap:round}\
-.bond-graph .stroke{stroke-width:2}\
-.bond-graph .multi .line{stroke-width:3.2}\
-.bond-graph .multi .arrow{stroke-width:2.2}\
-.bond-graph .multi .stroke{stroke-width:2.6}\
-.bond-graph .hit{stroke:#000;stroke-opacity:0;stroke-width:9;pointer-events:stroke}\
-";
+.bond-graph text{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,\"DejaVu Sans\",sans-serif}";
+
+const HOVER: &str = "\
+.bond-graph .bond:hover .line,.bond-graph .bond:hover .arrow,.bond-graph .bond:hover .stroke,\
+.bond-graph .node:hover .box,.bond-graph .part:hover .box{stroke:var(--hover)}";
+
+/// A text: its colour, its size in pixels, whether it is bold.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Letters {
+    pub colour: &'static str,
+    pub size: i32,
+    pub is_bold: bool,
+}
+
+impl Letters {
+    /// The attributes.
+    pub fn attributes(self) -> String {
+        let weight = if self.is_bold { " font-weight=\"bold\"" } else { "" };
+        format!("{} font-size=\"{}\"{weight}", fill(self.colour), self.size)
+    }
+}
+
+/// The attribute that fills something with a colour.
+pub(crate) fn fill(colour: &str) -> String {
+    format!("fill=\"{}\"", light(colour))
+}
+
+/// The attribute that draws a line in a colour.
+pub(crate) fn stroke(colour: &str) -> String {
+    format!("stroke=\"{}\"", light(colour))
+}
+
+fn light(colour: &str) -> &'static str {
+    COLOURS.iter().find(|(name, ..)| *name == colour).map_or("none", |(_, light, _)| light)
+}
 
 /// The style sheet.
 pub(crate) fn style() -> String {
-    let mut text = String::from(SHAPES);
-    for (selectors, property, colour) in RULES {
-        let selector = selectors.split(',').map(|one| format!(".bond-graph {one}")).collect::<Vec<_>>().join(",");
-        let light = COLOURS.iter().find(|(name, ..)| *name == colour).map_or("", |(_, light, _)| light);
-        text += &format!("{selector}{{{property}:{light};{property}:var(--{colour})}}");
-    }
     let variables = |of: fn(&(&'static str, &'static str, &'static str)) -> &'static str| -> String {
         COLOURS.iter().map(|colour| format!("--{0}:var(--bond-graph-{0},{1});", colour.0, of(colour))).collect()
     };
     let (light, dark) = (variables(|colour| colour.1), variables(|colour| colour.2));
-    text + &format!(".bond-graph{{{light}}}@media (prefers-color-scheme:dark){{.bond-graph{{{dark}}}}}")
+    let painted = |property: &str| -> String {
+        let rule = |(name, light, _): &(&str, &str, &str)| {
+            format!(".bond-graph [{property}=\"{light}\"]{{{property}:var(--{name})}}")
+        };
+        COLOURS.iter().map(rule).collect()
+    };
+    format!(
+        "@supports (fill:var(--ink)){{{IN_PAGES}.bond-graph{{{light}}}{}{}{HOVER}}}\
+         @media (prefers-color-scheme:dark){{.bond-graph{{{dark}}}}}",
+        painted("fill"),
+        painted("stroke")
+    )
 }

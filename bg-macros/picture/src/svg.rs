@@ -14,7 +14,7 @@ use crate::marks::Mark;
 use crate::route::Rect;
 use crate::sheet::{Block, Link, Of, Sheet};
 use crate::shelves::Point;
-use crate::style::style;
+use crate::style::{LETTERS, Letters, fill, stroke, style};
 use crate::text::{self, xml};
 
 /// Pixels between a block's border and its box.
@@ -34,9 +34,10 @@ pub fn svg(graph: &Graph, level: Level) -> String {
     let name = xml(&graph.name);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"bond-graph\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" role=\"img\" aria-label=\"Bond graph of {name}\">\n\
-         <style>{}</style>\n<rect class=\"paper\" width=\"{width}\" height=\"{height}\"/>\n",
-        style()
+         viewBox=\"0 0 {width} {height}\" {LETTERS} role=\"img\" aria-label=\"Bond graph of {name}\">\n\
+         <style>{}</style>\n<rect class=\"paper\" width=\"{width}\" height=\"{height}\" {}/>\n",
+        style(),
+        fill("paper")
     );
     layout.frames.iter().for_each(|frame| draw_frame(&mut out, graph, frame));
     for (link, path) in sheet.links.iter().zip(&layout.paths) {
@@ -63,10 +64,18 @@ fn draw_frame(out: &mut String, graph: &Graph, frame: &Frame) {
     let name = xml(&part.name);
     let rest = xml(part.title()[part.name.len()..].trim());
     line!(out, "<g class=\"group\" data-group=\"{name}\">");
-    line!(out, "<rect class=\"frame\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"6\"/>");
+    line!(
+        out,
+        "<rect class=\"frame\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"6\" {} {}/>",
+        fill("frame"),
+        stroke("line")
+    );
     let title = frame.title(graph);
     let (x, y) = (title.left * PITCH, title.top * PITCH + PITCH);
-    line!(out, "<text class=\"title\" x=\"{x}\" y=\"{y}\">{name} <tspan class=\"word\">{rest}</tspan></text>\n</g>");
+    let letters = Letters { colour: "ink", size: 12, is_bold: true }.attributes();
+    // Readers that leave out the blank keep the step.
+    let word = format!("<tspan dx=\"2\" {} font-weight=\"normal\">{rest}</tspan>", fill("faint"));
+    line!(out, "<text class=\"title\" x=\"{x}\" y=\"{y}\" text-anchor=\"start\" {letters}>{name} {word}</text>\n</g>");
 }
 
 fn draw_link(out: &mut String, graph: &Graph, sheet: &Sheet, link: &Link, path: &[Point]) {
@@ -79,13 +88,19 @@ fn draw_link(out: &mut String, graph: &Graph, sheet: &Sheet, link: &Link, path: 
     let indices = link.bonds.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
     let title = bonds.iter().map(|bond| bond_title(graph, bond)).collect::<Vec<_>>().join("\n");
     let route = corners(path);
-    line!(out, "<g class=\"{class}\" data-bond=\"{indices}\">\n<title>{}</title>", xml(&title));
-    line!(out, "<path class=\"hit\" d=\"{route}\"/>\n<path class=\"line\" d=\"{route}\"/>");
+    let [width, width_of_arrow, width_of_stroke] = if is_multi { [3.2, 2.2, 2.6] } else { [1.3, 1.3, 2.0] };
+    let colour = stroke("bond");
+    line!(out, "<g class=\"{class}\" data-bond=\"{indices}\" fill=\"none\">\n<title>{}</title>", xml(&title));
+    line!(out, "<path class=\"hit\" d=\"{route}\" stroke=\"none\" stroke-width=\"9\" pointer-events=\"stroke\"/>");
+    line!(out, "<path class=\"line\" d=\"{route}\" {colour} stroke-width=\"{width}\" stroke-linejoin=\"round\"/>");
     if link.has_arrow {
-        line!(out, "<path class=\"arrow\" d=\"{}\"/>", half_arrow(path, is_multi));
+        let barb = half_arrow(path, is_multi);
+        let width = width_of_arrow;
+        line!(out, "<path class=\"arrow\" d=\"{barb}\" {colour} stroke-width=\"{width}\" stroke-linecap=\"round\"/>");
     }
     if let Some(end) = link.stroke {
-        line!(out, "<path class=\"stroke\" d=\"{}\"/>", causal_stroke(path, end));
+        let bar = causal_stroke(path, end);
+        line!(out, "<path class=\"stroke\" d=\"{bar}\" {colour} stroke-width=\"{width_of_stroke}\"/>");
     }
     out.push_str("</g>\n");
 }
@@ -151,11 +166,18 @@ fn draw_block(out: &mut String, graph: &Graph, block: &Block, rect: Rect) {
     let (x, y) = (rect.left * PITCH + INSET, rect.top * PITCH + INSET);
     let (width, height) = ((rect.right - rect.left) * PITCH - 2 * INSET, (rect.bottom - rect.top) * PITCH - 2 * INSET);
     let middle = x + width / 2;
-    let [first, second] = if matches!(block.of, Of::Part(_)) { [14, 28] } else { [16, 29] };
+    let is_part = matches!(block.of, Of::Part(_));
+    let [first, second] = if is_part { [14, 28] } else { [16, 29] };
+    let border = if is_part { format!(" {}", stroke("line")) } else { String::new() };
+    let colours = format!("{}{border}", fill(colour(block)));
+    let large = Letters { colour: "ink", size: 13, is_bold: true };
+    let small = Letters { colour: if block.mark == Mark::None { "faint" } else { "ink" }, size: 10, is_bold: false };
+    let letters = if is_part { [small, large] } else { [large, small] };
+    let [kind, name] = letters.map(Letters::attributes);
     line!(out, "<g {opening}>\n<title>{}</title>", xml(&title));
-    line!(out, "<rect class=\"box\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"5\"/>");
-    line!(out, "<text class=\"kind\" x=\"{middle}\" y=\"{}\">{}</text>", y + first, xml(&block.head));
-    line!(out, "<text class=\"name\" x=\"{middle}\" y=\"{}\">{}</text>\n</g>", y + second, xml(&block.name));
+    line!(out, "<rect class=\"box\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"5\" {colours}/>");
+    line!(out, "<text class=\"kind\" x=\"{middle}\" y=\"{}\" {kind}>{}</text>", y + first, xml(&block.head));
+    line!(out, "<text class=\"name\" x=\"{middle}\" y=\"{}\" {name}>{}</text>\n</g>", y + second, xml(&block.name));
 }
 
 /// The classes of a block: what it is, and what is special about it.
@@ -172,6 +194,18 @@ fn classes(block: &Block) -> String {
         Mark::None => kind.to_owned(),
         Mark::Multiplier => format!("{kind} multiplier"),
         Mark::Derivative => format!("{kind} derivative"),
+    }
+}
+
+/// The colour of a block.
+fn colour(block: &Block) -> &'static str {
+    match (block.mark, block.of, block.head.as_str()) {
+        (Mark::Multiplier, ..) => "multiplier",
+        (Mark::Derivative, ..) => "derivative",
+        (_, Of::Part(_), _) => "frame",
+        (_, _, "I" | "C") => "storage",
+        (_, _, "R" | "MR") => "resistor",
+        _ => "node",
     }
 }
 
@@ -213,10 +247,17 @@ fn draw_key(out: &mut String, key: &[(&str, &str)], top: i32) {
     for (class, text) in key {
         line!(
             out,
-            "<g class=\"{class}\"><rect class=\"box\" x=\"{x}\" y=\"{}\" width=\"16\" height=\"12\" rx=\"3\"/>",
-            top + 2
+            "<g class=\"{class}\"><rect class=\"box\" x=\"{x}\" y=\"{}\" width=\"16\" height=\"12\" rx=\"3\" {}/>",
+            top + 2,
+            fill(class)
         );
-        line!(out, "<text class=\"key\" x=\"{}\" y=\"{}\">{}</text></g>", x + 22, top + 12, xml(text));
+        let letters = Letters { colour: "ink", size: 10, is_bold: false }.attributes();
+        let (left, y) = (x + 22, top + 12);
+        line!(
+            out,
+            "<text class=\"key\" x=\"{left}\" y=\"{y}\" text-anchor=\"start\" {letters}>{}</text></g>",
+            xml(text)
+        );
         x += key_width(text);
     }
 }

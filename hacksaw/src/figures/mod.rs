@@ -10,7 +10,11 @@ mod path;
 use std::sync::Arc;
 
 use bg_model::simulation::Recording;
+use bg_workbench::figures::canvas::{Area, UNITS, drawing, text, write};
+use bg_workbench::figures::palette::PENCIL;
 use bg_workbench::figures::{self, FigureError};
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
 
 /// What a figure shows of its link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -149,4 +153,18 @@ impl Figure {
             Quantity::Path => path::draw(&heading, trajectory, self.link),
         }
     }
+}
+/// The width of [`key_of_ends`], CSS pixels.
+const KEY: i32 = 84;
+
+/// What the marks at a curve's start and end are, from `at` (CSS pixels): drawn, as letters of circles are not in every
+/// reader's font.
+fn key_of_ends(area: &Area, (x, y): (i32, i32)) -> Result<(), FigureError> {
+    let (radius, middle) = (4 * UNITS, y + 7);
+    let centre = |x: i32| (x * UNITS + radius, middle * UNITS);
+    let style = text(12, PENCIL.light, HPos::Left);
+    area.draw(&Circle::new(centre(x), radius, PENCIL.light.stroke_width(UNITS as u32))).map_err(drawing)?;
+    write(area, "start", (x + 12, y), &style)?;
+    area.draw(&Circle::new(centre(x + 50), radius, PENCIL.light.filled())).map_err(drawing)?;
+    write(area, "end", (x + 62, y), &style)
 }

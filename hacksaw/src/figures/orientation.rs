@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::key_of_ends;
 use crate::columns::{AXES, continued};
 use bg_model::simulation::Recording;
 use bg_workbench::figures::FigureError;
@@ -73,8 +74,7 @@ fn sphere(area: &Area, tips: &[[&[f64]; 3]]) -> Result<(), FigureError> {
         let style = text(13, COLOURS[axis].light, HPos::Left);
         write(area, &format!("tip of {name}\u{2032}"), (content.x + 90 * axis as i32, content.y + 3), &style)?;
     }
-    let style = text(12, PENCIL.light, HPos::Left);
-    write(area, "\u{25CB} start   \u{25CF} end", (content.x + 290, content.y + 3), &style)?;
+    key_of_ends(area, (content.x + 290, content.y + 3))?;
 
     let square = Rectangle { x: content.x, y: content.y + CAPTION, width: SIDE, height: SIDE }.of(area);
     let view = || Axis::over(-VIEW..VIEW, 1);

@@ -5,6 +5,7 @@
 use plotters::prelude::*;
 use plotters::style::text_anchor::HPos;
 
+use super::{KEY, key_of_ends};
 use crate::columns::AXES;
 use bg_model::simulation::Recording;
 use bg_workbench::figures::FigureError;
@@ -61,8 +62,7 @@ fn plane(
     let plot = Rectangle { x: content.x + VALUE_LABELS, y: content.y + CAPTION, width: SIDE, height: SIDE };
     debug_assert!(CAPTION + SIDE + TIME_LABELS <= content.height);
     write(area, &captions[1], (plot.x, plot.y - CAPTION + 3), &text(13, PENCIL.light, HPos::Left))?;
-    let key = "\u{25CB} start   \u{25CF} end";
-    write(area, key, (plot.x + SIDE, plot.y - CAPTION + 3), &text(12, PENCIL.light, HPos::Right))?;
+    key_of_ends(area, (plot.x + SIDE - KEY, plot.y - CAPTION + 3))?;
 
     // Half a pixel is the nearest that two points are told apart; the most keeps a path of any length small.
     let half_pixel = 0.5 * (x.end - x.start) / f64::from(SIDE);

@@ -10,6 +10,7 @@ use plotters::style::FontStyle;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::FigureError;
+use super::lettering::set;
 use super::palette::{INK, PAPER, PENCIL, dark_style};
 
 /// Units of drawing for one CSS pixel.
@@ -97,7 +98,17 @@ pub fn drawing(fault: impl std::fmt::Display) -> FigureError {
     FigureError::Drawing(fault.to_string())
 }
 
-/// Shows the sheet at a tenth, adds the dark colours, sets subscripts.
+/// The body with the opacity of each shape as that of its fill and line, which every reader knows; not where it is whole.
+fn opacity(body: &str) -> String {
+    let mut parts = body.replace(" opacity=\"1\"", "");
+    while let Some((before, after)) = parts.split_once(" opacity=\"") {
+        let (value, rest) = after.split_once('"').unwrap_or((after, ""));
+        parts = format!("{before} fill-opacity=\"{value}\" stroke-opacity=\"{value}\"{rest}");
+    }
+    parts
+}
+
+/// Shows the sheet at a tenth, adds the dark colours, sets the texts.
 fn finish(svg: &str, heading: &str) -> String {
     let (_, body) = svg.split_once('>').expect("the backend starts with the svg tag");
     let (width, height) = (WIDTH * UNITS, HEIGHT * UNITS);
@@ -106,23 +117,7 @@ fn finish(svg: &str, heading: &str) -> String {
          role=\"img\" aria-label=\"{heading}\">"
     );
     let joins = "<style>polyline{stroke-linejoin:round;stroke-linecap:round}</style>";
-    format!("{opening}\n{}{joins}\n{}", dark_style(), subscripts(body)).replace(UNDERLINE, "_")
-}
-
-/// Sets the index of `h_2x`, `C_4y` and the like as a subscript.
-fn subscripts(body: &str) -> String {
-    let mut parts = body.split('_');
-    let mut set = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let (index, rest) = part.split_at(part.find(|c: char| !c.is_ascii_alphanumeric()).unwrap_or(part.len()));
-        let (same_line, after) = rest.split_at(rest.find("</text>").unwrap_or(rest.len()));
-        // A quarter of the line down at three quarters of the size, and back up; a blank at the start would be lost.
-        let same_line = same_line.trim();
-        set += &format!(
-            "<tspan dy=\"0.25em\" font-size=\"75%\">{index}</tspan><tspan dx=\"0.3em\" dy=\"-0.1875em\">{same_line}</tspan>{after}"
-        );
-    }
-    set
+    format!("{opening}\n{}{joins}\n{}", dark_style(), set(&opacity(body))).replace(UNDERLINE, "_")
 }
 
 #[cfg(test)]
@@ -130,17 +125,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_index_becomes_a_subscript() {
-        let set = subscripts("<text>h_2x in N m s\n</text><text>t in s</text>");
-        let tspans =
-            "<tspan dy=\"0.25em\" font-size=\"75%\">2x</tspan><tspan dx=\"0.3em\" dy=\"-0.1875em\">in N m s</tspan>";
-        assert_eq!(set, format!("<text>h{tspans}</text><text>t in s</text>"));
-    }
-
-    #[test]
     fn a_name_keeps_its_underline_in_text_and_heading() {
         let name = literally("upper_angle");
         let set = finish(&format!("<svg><text>{name}</text>"), &name);
         assert!(set.contains("aria-label=\"upper_angle\"") && set.contains("<text>upper_angle</text>"), "{set}");
+    }
+
+    #[test]
+    fn an_opacity_is_that_of_fill_and_line() {
+        let set = opacity("<rect opacity=\"1\"/><rect opacity=\"0.4\" fill=\"#FFFFFF\"/>");
+        assert_eq!(set, "<rect/><rect fill-opacity=\"0.4\" stroke-opacity=\"0.4\" fill=\"#FFFFFF\"/>");
     }
 }

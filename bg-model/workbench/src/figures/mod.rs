@@ -14,6 +14,8 @@ pub mod fit;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod influence;
 #[cfg(not(target_arch = "wasm32"))]
+mod lettering;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod outputs;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod palette;

@@ -196,7 +196,8 @@ impl OverTime<'_> {
         let mut chart = chart(area, plot, time, values, self.time_description.as_deref())?;
         for (values, colour) in std::iter::once((self.values, self.colour)).chain(more.iter().copied()) {
             let points = self.times.iter().copied().zip(values.iter().copied());
-            let is_shown = |(t, value): &(f64, f64)| self.span.contains(t) || *t == self.span.end && value.is_finite();
+            let is_in_span = |t: &f64| self.span.contains(t) || *t == self.span.end;
+            let is_shown = |(t, value): &(f64, f64)| is_in_span(t) && value.is_finite();
             let shown: Vec<(f64, f64)> = points.filter(is_shown).collect();
             // Two columns a pixel: finer is not seen.
             let thin = thinning::over_time(&shown, 2 * plot.width as usize);

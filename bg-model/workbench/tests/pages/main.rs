@@ -11,4 +11,5 @@ mod page;
 #[path = "../../examples/pendulum.rs"]
 #[allow(dead_code, unused_attributes)]
 mod pendulum;
+mod readers;
 mod report;
