@@ -18,7 +18,7 @@ pub fn over_time(points: &[(f64, f64)], columns: usize) -> Vec<(f64, f64)> {
 
 /// The first, lowest, highest and last point of a chunk, each once, in their order.
 fn extremes(chunk: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let by_value = |a: &&usize, b: &&usize| chunk[**a].1.total_cmp(&chunk[**b].1);
+    let by_value = |a: &&usize, b: &&usize| canonical(chunk[**a].1).total_cmp(&canonical(chunk[**b].1));
     let all: Vec<usize> = (0..chunk.len()).collect();
     let mut kept: Vec<usize> = [all.first(), all.iter().min_by(by_value), all.iter().max_by(by_value), all.last()]
         .into_iter()
@@ -28,6 +28,13 @@ fn extremes(chunk: &[(f64, f64)]) -> Vec<(f64, f64)> {
     kept.sort_unstable();
     kept.dedup();
     kept.into_iter().map(|index| chunk[index]).collect()
+}
+
+/// The number, and of what is no number always the same bits: those of 0/0 are another sign from machine to machine, and
+/// in a browser from one call to the next.
+pub(crate) fn canonical(value: f64) -> f64 {
+    const NONE: f64 = f64::from_bits(0x7ff8_0000_0000_0000);
+    if value.is_nan() { NONE } else { value }
 }
 
 /// The points of a path that are at least `distance` apart along it, and its last one; every n-th of them where they
@@ -53,6 +60,19 @@ pub fn along_path(points: &[(f64, f64)], distance: f64, most: usize) -> Vec<(f64
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_sign_of_what_is_no_number_changes_nothing() {
+        let thin = |none: f64| {
+            let value = |k: i32| if k % 7 == 0 { none } else { f64::from(k % 11) };
+            let points: Vec<_> = (0..4000).map(|k| (f64::from(k), value(k))).collect();
+            over_time(&points, 50)
+                .into_iter()
+                .map(|(t, value)| (t.to_bits(), canonical(value).to_bits()))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(thin(f64::NAN), thin(-f64::NAN));
+    }
 
     #[test]
     fn a_spike_survives() {

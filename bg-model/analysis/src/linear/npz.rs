@@ -10,6 +10,7 @@ use std::io::{Cursor, Error, Write};
 use bg_model::nalgebra::DMatrix;
 
 use super::state_space::{Named, StateSpace};
+use crate::thinning::canonical;
 
 impl StateSpace {
     /// The bytes of an `.npz` file with the arrays `A`, `B`, `C`, `D`, `eigenvalues` (complex, both of a pair),
@@ -67,7 +68,7 @@ struct Array {
 
 impl Array {
     fn numbers(shape: &[usize], values: &[f64]) -> Self {
-        let bytes = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        let bytes = values.iter().flat_map(|value| canonical(*value).to_le_bytes()).collect();
         Self { kind: "<f8".to_owned(), shape: shape.to_vec(), bytes }
     }
 
@@ -114,4 +115,16 @@ fn archive(arrays: &[(&str, Array)]) -> Result<Vec<u8>, Error> {
     }
     archive.finish().map_err(Error::other)?;
     Ok(bytes.into_inner())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_has_one_form() {
+        let [positive, negative] = [f64::NAN, -f64::NAN].map(|none| Array::numbers(&[2], &[1.5, none]).npy());
+        assert_eq!(positive, negative);
+        assert_eq!(positive[positive.len() - 16..][..8], 1.5_f64.to_le_bytes());
+    }
 }

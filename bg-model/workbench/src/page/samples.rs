@@ -79,6 +79,10 @@ impl Series {
 
 /// `value` to `digits` digits, 1 at least; without the sign of a zero.
 pub fn rounded(value: f64, digits: usize) -> f64 {
+    if value.is_nan() {
+        // One of them: native and in a browser they have other bits.
+        return f64::NAN;
+    }
     let digits = digits.max(1);
     let by_text = || format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
     by_arithmetic(value, digits).unwrap_or_else(by_text) + 0.0
@@ -160,5 +164,7 @@ mod tests {
         assert_eq!([9.999_996, 1e300, 5e-324, 99_999_999.0].map(|v| rounded(v, 6)), [10.0, 1e300, 5e-324, 1e8]);
         assert_eq!(Series::rounded([1.000_000_1, 1.000_000_2], 6), Series::Still(1.0));
         assert_eq!(Series::new(vec![1.0, 2.0]), Series::Moving(vec![1.0, 2.0]));
+        let none = Series::rounded([f64::NAN, -f64::NAN], 6);
+        assert!(matches!(none, Series::Still(value) if value.to_bits() == f64::NAN.to_bits()), "{none:?}");
     }
 }
