@@ -9,6 +9,7 @@ use std::process::ExitCode;
 
 use bg_fmi::archive::archive;
 use bg_fmi::{AtDefaults, Packing, Version};
+use bg_model::description::Description;
 use thiserror::Error;
 
 use super::arguments::FmuArguments;
@@ -39,6 +40,12 @@ pub(super) enum LibraryError {
         .0.display(), .1
     )]
     Foreign(PathBuf, &'static str),
+    #[error(
+        "--library {}: it has no `{model}` as this program has it: it exports another model, or one of other sources; build both anew \
+         and pack again",
+        path.display()
+    )]
+    OtherBuild { path: PathBuf, model: &'static str },
 }
 
 pub(super) fn pack(program: &Program, arguments: &FmuArguments) -> Result<ExitCode, InputError> {
@@ -60,6 +67,9 @@ pub(super) fn pack(program: &Program, arguments: &FmuArguments) -> Result<ExitCo
     let version = if arguments.fmi == Version::Two.name() { Version::Two } else { Version::Three };
     if !exports(&bytes, version) {
         return Err(LibraryError::Foreign(library, version.name()).into());
+    }
+    if prebuilt.is_none() && !is_built_of(&bytes, scene.description) {
+        return Err(LibraryError::OtherBuild { path: library, model: scene.description.name }.into());
     }
     let path = out.clone().unwrap_or_else(|| PathBuf::from(format!("{identifier}.fmu")));
     let packing = Packing { version, identifier, stop_time: *t_end };
@@ -99,7 +109,17 @@ fn exports(library: &[u8], version: Version) -> bool {
         Version::Two => b"fmi2Instantiate",
         Version::Three => b"fmi3InstantiateModelExchange",
     };
-    library.windows(name.len()).any(|bytes| bytes == name)
+    has(library, name)
+}
+
+/// Whether a library has the model of this description among its own: the text of its graph, in which every law, value
+/// and name stands. Else a host would find out when it makes an instance.
+fn is_built_of(library: &[u8], description: &Description) -> bool {
+    has(library, description.graph.as_bytes())
+}
+
+fn has(library: &[u8], text: &[u8]) -> bool {
+    text.is_empty() || library.windows(text.len()).any(|bytes| bytes == text)
 }
 
 #[cfg(test)]
@@ -124,5 +144,9 @@ mod tests {
         assert!(
             exports(library, Version::Three) && !exports(library, Version::Two) && !exports(b"text", Version::Three)
         );
+        let of = |graph: &'static str| Description { graph, ..Description::default() };
+        let library = b"..graph P { param mass: kg = 1; }..";
+        assert!(is_built_of(library, &of("graph P { param mass: kg = 1; }")));
+        assert!(!is_built_of(library, &of("graph P { param mass: kg = 2; }")));
     }
 }
