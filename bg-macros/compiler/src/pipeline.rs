@@ -224,8 +224,9 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     equations.close();
     let second_order = second_order::differentiate(&equations);
     let elimination = {
-        let (states, unknowns, places) = (equations.states.len(), jacobian.unknowns.len(), jacobian.places());
-        deferred(move || elimination::plan(states, unknowns, &places))
+        let (states, unknowns, late) = (equations.states.len(), jacobian.unknowns.len(), jacobian.late);
+        let places = jacobian.places();
+        deferred(move || elimination::plan(states, unknowns, late, &places))
     };
     let mut sizes = sizes::differentiate(&equations);
     let programs = program::programs(&mut equations, &jacobian, &second_order, &mut sizes);

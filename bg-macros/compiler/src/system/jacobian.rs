@@ -9,11 +9,12 @@
 //! sparse. So these stand beside the rates, and the reactions beside the states: df/dx is f_x - f_l (r_l)^-1 r_x of the
 //! rates f(x, l) with r(x, l) = 0, and nobody has to multiply it out. Dry friction among them keeps df/dx itself, by
 //! the implicit function theorem from the factors that solve for the reactions: where others hold already what sticks,
-//! r_l has no inverse.
+//! r_l has no inverse. Of trees of joints the accelerations are unknowns as well (`accelerated`).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use super::accelerated;
 use crate::expr::{Id, Pool, Symbol, derivative};
 use crate::system::equations::StateEquations;
 use crate::system::equations::solution::Solution;
@@ -23,9 +24,11 @@ use crate::system::equations::solution::Solution;
 pub struct Jacobian {
     /// The expressions.
     pub pool: Pool,
-    /// The reactions that stand beside the states, each with the equation that gives it: rows and columns after those
-    /// of the states.
+    /// The accelerations and reactions that stand beside the states, each with the equation that gives it: rows and
+    /// columns after those of the states.
     pub unknowns: Vec<Symbol>,
+    /// How many of these, the last ones, may have nothing on the diagonal of their equation until others are eliminated.
+    pub late: usize,
     /// The entries, row by row, in each row by column.
     pub entries: Vec<Entry>,
     /// df/dt of every rate, the reactions' change with time in it; an input contributes through its own derivative,
@@ -67,10 +70,19 @@ impl Jacobian {
 /// Differentiates the rates. Switched laws are differentiated branch by branch: a switch is frozen.
 #[must_use]
 pub fn differentiate(equations: &StateEquations) -> Jacobian {
+    accelerated::differentiate(equations).unwrap_or_else(|| by_entries(equations))
+}
+
+/// The derivatives of the rates as they are written, whatever they are.
+pub(crate) fn by_entries(equations: &StateEquations) -> Jacobian {
     let mut pool = equations.pool.clone();
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let unknowns = equations.solution.smooth(&pool).to_vec();
-    let rows: Vec<Id> = rates.iter().copied().chain(equations_of(&mut pool, equations, &unknowns)).collect();
+    let rows: Vec<Id> = rates
+        .iter()
+        .copied()
+        .chain(equations_of(&mut pool, equations, &unknowns, &equations.solution.residuals))
+        .collect();
     let columns = (0..rates.len()).map(Symbol::state).chain(unknowns.iter().copied());
     let mut entries = Vec::new();
     for (column, symbol) in columns.enumerate() {
@@ -83,22 +95,23 @@ pub fn differentiate(equations: &StateEquations) -> Jacobian {
         entries.extend(values.into_iter().enumerate().map(entry).filter(|entry| !pool.is_zero(entry.value)));
     }
     entries.sort_by_key(|entry| (entry.row, entry.column));
-    let slopes = slopes(&mut pool, equations, &rates);
-    let mut jacobian = Jacobian { pool, unknowns, entries, slopes };
-    jacobian.close(&equations.solution);
-    jacobian
+    Jacobian::closed(pool, equations, (unknowns, 0), entries)
 }
 
-/// The equations of the unknowns: left sides that are zero. A reaction that is not kept is zero.
-fn equations_of(pool: &mut Pool, equations: &StateEquations, unknowns: &[Symbol]) -> Vec<Id> {
-    let mut equation = |(row, &unknown): (usize, &Symbol)| {
-        let residual = equations.solution.residuals[row];
+/// The equations of the reactions with these residuals: left sides that are zero. A reaction that is not kept is zero.
+pub(super) fn equations_of(
+    pool: &mut Pool,
+    equations: &StateEquations,
+    unknowns: &[Symbol],
+    residuals: &[Id],
+) -> Vec<Id> {
+    let mut equation = |(row, (&unknown, &residual)): (usize, (&Symbol, &Id))| {
         let Some(kept) = equations.holding.kept(row) else { return residual };
         let (kept, unknown) = (pool.symbol(Symbol::Kept(kept)), pool.symbol(unknown));
         let (asked, left) = (pool.mul(kept, residual), pool.mul(kept, unknown));
         pool.linear(0.0, &[(asked, 1.0), (unknown, 1.0), (left, -1.0)])
     };
-    unknowns.iter().enumerate().map(&mut equation).collect()
+    unknowns.iter().zip(residuals).enumerate().map(&mut equation).collect()
 }
 
 /// df/dt of every rate.
@@ -113,6 +126,20 @@ fn slopes(pool: &mut Pool, equations: &StateEquations, rates: &[Id]) -> Vec<Id> 
 }
 
 impl Jacobian {
+    /// The entries with df/dt, the values of the reactions in their places.
+    pub(super) fn closed(
+        mut pool: Pool,
+        equations: &StateEquations,
+        (unknowns, late): (Vec<Symbol>, usize),
+        entries: Vec<Entry>,
+    ) -> Self {
+        let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
+        let slopes = slopes(&mut pool, equations, &rates);
+        let mut jacobian = Self { pool, unknowns, late, entries, slopes };
+        jacobian.close(&equations.solution);
+        jacobian
+    }
+
     /// Puts the reactions' values in their places.
     fn close(&mut self, solution: &Solution) {
         let roots = self.roots();

@@ -2,8 +2,11 @@
 //!
 //! In: a graph with its strokes. Out: the state equations, what a scene needs of them, their derivatives.
 
+mod accelerated;
 pub mod equations;
+pub mod inverse;
 pub mod jacobian;
+pub mod link;
 pub mod projection;
 pub mod reduce;
 pub mod requirements;

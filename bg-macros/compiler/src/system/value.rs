@@ -50,6 +50,11 @@ impl Value {
         Self((0..9).map(|k| self.0[3 * (k % 3) + k / 3]).collect())
     }
 
+    /// The matrix whose lower half is the upper one, as it is but for rounding.
+    pub fn symmetric(&self) -> Self {
+        Self((0..9).map(|k| self.0[3 * (k / 3).min(k % 3) + (k / 3).max(k % 3)]).collect())
+    }
+
     /// The sum; a zero scalar fits any shape.
     pub fn add(&self, pool: &mut Pool, other: &Self) -> Self {
         match (self.0.len(), other.0.len()) {

@@ -126,10 +126,14 @@ pub enum Substep {
     },
 }
 
-/// Plans the elimination for a Jacobian of `n` states and `unknowns` after them with these places.
+/// Plans the elimination for a Jacobian of `n` states and `unknowns` after them with these places. Of the equations of the
+/// last `late` unknowns the place on the diagonal may be zero until others are eliminated.
+///
+/// # Panics
+/// If no order has something on the diagonal of each pivot.
 #[must_use]
-pub fn plan(n: usize, unknowns: usize, places: &[(usize, usize)]) -> Elimination {
-    let order = order::best(&Pattern::new(n + unknowns, places));
+pub fn plan(n: usize, unknowns: usize, late: usize, places: &[(usize, usize)]) -> Elimination {
+    let order = order::best(&Pattern::new(n, unknowns, late, places));
     steps::in_order(order, n, places)
 }
 

@@ -20,6 +20,9 @@ const MEASURES: [Measure; 3] = [
     |pattern, pivot| [pattern.fill_of(pivot).len(), pattern.updates_of(pivot)],
 ];
 
+/// What an order costs that has a pivot on a place where nothing is; what such a pivot has of a measure.
+const IMPOSSIBLE: [usize; 2] = [usize::MAX; 2];
+
 /// The order with the least fill, of equal ones that with the fewest updates.
 pub(super) fn best(pattern: &Pattern) -> Vec<usize> {
     let natural = (0..pattern.rows.len()).collect();
@@ -30,6 +33,9 @@ pub(super) fn best(pattern: &Pattern) -> Vec<usize> {
 
 /// The order that takes the pivot with the least measure at each step.
 fn greedy(mut pattern: Pattern, measure: Measure) -> Vec<usize> {
+    let measure = |pattern: &Pattern, pivot: usize| {
+        if pattern.diagonal[pivot] { measure(pattern, pivot) } else { IMPOSSIBLE }
+    };
     let mut measures: Vec<[usize; 2]> = (0..pattern.rows.len()).map(|pivot| measure(&pattern, pivot)).collect();
     let mut left: BTreeSet<([usize; 2], usize)> = measures.iter().copied().zip(0..).collect();
     let mut order = Vec::with_capacity(left.len());
@@ -48,6 +54,9 @@ fn greedy(mut pattern: Pattern, measure: Measure) -> Vec<usize> {
 fn cost(mut pattern: Pattern, order: &[usize]) -> [usize; 2] {
     let mut sum = [0, 0];
     for &pivot in order {
+        if !pattern.diagonal[pivot] {
+            return IMPOSSIBLE;
+        }
         sum = [sum[0] + pattern.fill_of(pivot).len(), sum[1] + pattern.updates_of(pivot)];
         pattern.eliminate(pivot);
     }

@@ -4,24 +4,37 @@
 
 use std::collections::BTreeSet;
 
-/// The filled places of a square matrix beside its diagonal, by row and by column.
+/// The filled places of a square matrix, by row and by column, and on its diagonal.
 #[derive(Clone, PartialEq, Eq, Debug)]
 pub(super) struct Pattern {
     /// The columns of every row.
     pub(super) rows: Vec<BTreeSet<usize>>,
     /// The rows of every column.
     pub(super) columns: Vec<BTreeSet<usize>>,
+    /// Of each row whether its place on the diagonal is filled, whatever c is: no other can be a pivot.
+    pub(super) diagonal: Vec<bool>,
+    /// How many rows are of states.
+    states: usize,
 }
 
 impl Pattern {
-    /// The pattern of a matrix of `n` rows with these places.
-    pub(super) fn new(n: usize, places: &[(usize, usize)]) -> Self {
-        let mut pattern = Self { rows: vec![BTreeSet::new(); n], columns: vec![BTreeSet::new(); n] };
-        places.iter().filter(|place| place.0 != place.1).for_each(|&place| pattern.fill(place));
+    /// The pattern of a matrix with these places of `n` rows of states, on whose diagonal is something, and of `unknowns`,
+    /// on whose diagonal the last `late` may have nothing.
+    pub(super) fn new(n: usize, unknowns: usize, late: usize, places: &[(usize, usize)]) -> Self {
+        let size = n + unknowns;
+        let diagonal = (0..size).map(|row| row < n).collect();
+        let none = || vec![BTreeSet::new(); size];
+        let mut pattern = Self { rows: none(), columns: none(), diagonal, states: n };
+        let is_sure = |&&(row, column): &&(usize, usize)| row != column || row < size - late;
+        places.iter().filter(is_sure).for_each(|&place| pattern.fill(place));
         pattern
     }
 
     fn fill(&mut self, (row, column): (usize, usize)) {
+        if row == column {
+            self.diagonal[row] = true;
+            return;
+        }
         self.rows[row].insert(column);
         self.columns[column].insert(row);
     }
@@ -46,6 +59,11 @@ impl Pattern {
     pub(super) fn eliminate(&mut self, pivot: usize) -> BTreeSet<usize> {
         for place in self.fill_of(pivot) {
             self.fill(place);
+        }
+        // The row of a state fills with multiples of c.
+        if pivot >= self.states {
+            let both = self.columns[pivot].intersection(&self.rows[pivot]);
+            both.for_each(|&row| self.diagonal[row] = true);
         }
         let (rows, columns) = (std::mem::take(&mut self.columns[pivot]), std::mem::take(&mut self.rows[pivot]));
         rows.iter().for_each(|&row| _ = self.rows[row].remove(&pivot));

@@ -34,7 +34,7 @@ struct Filled {
 
 impl Filled {
     fn new(n: usize, entries: &BTreeMap<(usize, usize), usize>) -> Self {
-        let mut pattern = Pattern::new(n, &entries.keys().copied().collect::<Vec<_>>());
+        let mut pattern = Pattern::new(n, 0, 0, &entries.keys().copied().collect::<Vec<_>>());
         let mut filled = Self { columns: Vec::new(), rows: Vec::new() };
         for pivot in 0..n {
             filled.columns.push(pattern.columns[pivot].iter().copied().collect());

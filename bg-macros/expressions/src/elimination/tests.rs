@@ -73,7 +73,7 @@ fn residual(places: &[(usize, usize)], entries: &[f64], c: f64, y: &[f64], b: &[
 fn steps_solve_the_system() {
     for seed in 0..400 {
         let (n, places, entries) = draw(seed);
-        let elimination = plan(n, 0, &places);
+        let elimination = plan(n, 0, 0, &places);
         let mut source = Source(Random::new(seed + 1000));
         let b: Vec<f64> = (0..n).map(|_| source.number()).collect();
         for c in [0.0, 0.7, 1.0] {
@@ -101,7 +101,7 @@ fn unknowns_are_solved_for_beside_the_states() {
             diagonal + source.number() / (2 * size) as f64
         };
         let entries: Vec<f64> = places.iter().map(entry).collect();
-        let elimination = plan(n, unknowns, &places);
+        let elimination = plan(n, unknowns, 0, &places);
         for c in [0.0, 0.7, 1.0] {
             let slots = factors(&elimination, c, &entries);
             let b: Vec<f64> = (0..size).map(|row| if row < n { source.number() } else { 0.0 }).collect();
@@ -118,6 +118,23 @@ fn unknowns_are_solved_for_beside_the_states() {
             assert!(residual < 1e-13, "seed {seed}: {residual:e}");
         }
     }
+}
+
+/// Two masses on a rod: m z_i + l = -k x_i, z_1 + z_2 = 0; the last equation has nothing on its diagonal.
+#[test]
+fn an_unknown_without_a_diagonal_comes_after_those_in_its_equation() {
+    let places = [(0, 2), (1, 3), (2, 0), (2, 2), (2, 4), (3, 1), (3, 3), (3, 4), (4, 2), (4, 3), (4, 4)];
+    let entries = [1.0, 1.0, 3.0, 2.0, 1.0, 5.0, 4.0, 1.0, 1.0, 1.0, 0.0];
+    let elimination = plan(2, 3, 1, &places);
+    let at = |row: usize| elimination.order.iter().position(|&other| other == row).expect("a pivot");
+    assert!(at(4) > at(2).min(at(3)), "{:?}", elimination.order);
+    let c = 0.5;
+    let slots = factors(&elimination, c, &entries);
+    let mut y = vec![1.0, 2.0, 0.0, 0.0, 0.0];
+    solve(&elimination, &slots, &mut y);
+    // z_2 = -z_1 = -z: x_1 = 1 + c z, x_2 = 2 - c z, 3 x_1 + 2 z = 5 x_2 - 4 z.
+    let z = 7.0 / (6.0 + 8.0 * c);
+    assert!((y[0] - 1.0 - c * z).abs() < 1e-14 && (y[1] - 2.0 + c * z).abs() < 1e-14, "{y:?}");
 }
 
 /// z of r_x y + r_z z = 0, by iteration: r_z is near 1.
@@ -157,7 +174,7 @@ fn fill_is_that_of_dense_elimination_and_never_above_the_natural_orders() {
     let mut less = 0;
     for seed in 0..400 {
         let (n, places, _) = draw(seed);
-        let elimination = plan(n, 0, &places);
+        let elimination = plan(n, 0, 0, &places);
         let mut rows = elimination.order.clone();
         rows.sort_unstable();
         assert_eq!(rows, (0..n).collect::<Vec<_>>(), "seed {seed}: every row is a pivot's once");
@@ -173,7 +190,7 @@ fn fill_is_that_of_dense_elimination_and_never_above_the_natural_orders() {
 #[test]
 fn an_arrow_that_points_down_does_not_fill() {
     let arrow: Vec<(usize, usize)> = (1..6).flat_map(|k| [(0, k), (k, 0)]).collect();
-    let elimination = plan(6, 0, &arrow);
+    let elimination = plan(6, 0, 0, &arrow);
     assert_eq!((elimination.fill, &elimination.order[4..]), (0, &[0, 5][..]));
     assert_eq!(steps::in_order((0..6).collect(), 6, &arrow).fill, 20);
     // Five entries in L, five in U, and the last two pivots; the others are 1.
@@ -186,10 +203,10 @@ fn an_arrow_that_points_down_does_not_fill() {
 
 #[test]
 fn a_pivot_that_is_one_costs_nothing() {
-    let elimination = plan(3, 0, &[(0, 1), (1, 2), (2, 2)]);
+    let elimination = plan(3, 0, 0, &[(0, 1), (1, 2), (2, 2)]);
     let inverted = elimination.factorisation.iter().filter(|step| matches!(step, Step::Invert { .. })).count();
     assert_eq!((inverted, elimination.slots), (1, 3));
-    assert!(plan(4, 0, &[]).factorisation.is_empty() && plan(4, 0, &[]).substitution.is_empty());
+    assert!(plan(4, 0, 0, &[]).factorisation.is_empty() && plan(4, 0, 0, &[]).substitution.is_empty());
 }
 
 #[test]

@@ -41,6 +41,7 @@ mod ways;
 use crate::expr::{Id, Pool, Symbol, text as expression_text};
 use crate::fault::Staged;
 use crate::graph::{CausalGraph, Input, Parameter};
+use crate::system::inverse::InverseDynamics;
 use crate::system::requirements::Requirements;
 use independent::Kept;
 
@@ -100,6 +101,8 @@ pub struct StateEquations {
     pub sides: Vec<Id>,
     /// What joints hold.
     pub holding: Holding,
+    /// Of bodies in the coordinates of joints the efforts that their accelerations take.
+    pub inverse: Option<InverseDynamics>,
     /// What impacts are calculated from.
     pub impacts: Impacts,
     /// Whether impulses of the rigid joints make the start velocities fit.

@@ -82,6 +82,9 @@ impl StateEquations {
         self.holding.replace(&mut pool, replace, branch);
         self.impacts.replace(&mut pool, replace, branch);
         self.shown.replace(&mut pool, replace, branch);
+        if let Some(inverse) = &mut self.inverse {
+            inverse.replace(&mut pool, replace, branch);
+        }
         self.pool = pool;
     }
 }

@@ -178,6 +178,7 @@ impl<'a> Signals<'a> {
             solution: Solution::default(),
             sides: Vec::new(),
             holding,
+            inverse: None,
             impacts: Impacts::default(),
             impulse: self.graph.impulse,
             baumgarte: self.graph.baumgarte,

@@ -109,6 +109,12 @@ fn forget(equations: &mut StateEquations, known: &Known) {
     }
     holding.retain(pool, known, &held);
     solution.retain(&solved);
+    if let Some(inverse) = &mut equations.inverse {
+        // Nothing that stays depends on what goes.
+        let zero = equations.pool.zero();
+        let is_gone = |symbol: Symbol| symbol.as_state().is_some_and(|state| !known.has_state(state));
+        inverse.replace(&mut equations.pool, &|symbol| is_gone(symbol).then_some(zero), &Branch::Kept);
+    }
 }
 
 /// Takes away the states without `kept`, to which nothing refers any more, and numbers the others anew.

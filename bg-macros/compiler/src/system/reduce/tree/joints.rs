@@ -11,26 +11,7 @@ use super::bodies::{Body, symbols, velocity};
 use super::numbers::{self, Matrix, UNIT};
 use crate::expr::{Id, Pool, Symbol};
 use crate::system::Value;
-
-/// What a step lets go, with its coordinate about or along the third axis.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Freedom {
-    /// An angle, rad, and its speed, rad/s.
-    Turn,
-    /// A travel, m, and its speed, m/s.
-    Slide,
-    /// All turning: the body keeps its orientation and its angular momentum.
-    Ball,
-    /// All motion: the body keeps all its states.
-    Free,
-}
-
-impl Freedom {
-    /// Whether it has a coordinate of its own.
-    pub fn has_coordinate(self) -> bool {
-        matches!(self, Self::Turn | Self::Slide)
-    }
-}
+use crate::system::link::{Freedom, Moves};
 
 /// One freedom of a joint.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -107,15 +88,6 @@ pub(super) struct Joint {
     pub angle: Option<usize>,
     /// Whether the start looks for its speeds.
     pub is_sought: bool,
-}
-
-/// The place and the speed of a step, with the cosine and the sine of an angle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Moves {
-    pub place: Id,
-    pub cosine: Id,
-    pub sine: Id,
-    pub speed: Id,
 }
 
 /// How many symbols a probe has.

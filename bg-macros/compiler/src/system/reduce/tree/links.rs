@@ -10,26 +10,11 @@
 use std::collections::BTreeMap;
 
 use super::bodies::Body;
-use super::joints::{Freedom, Joint};
-use super::numbers::{self, Matrix, symmetric};
-use crate::expr::{Id, Pool};
+use super::joints::Joint;
+use super::numbers::{self, Matrix};
+use crate::expr::Pool;
 use crate::system::Value;
-
-/// What one step of a joint moves.
-#[derive(Clone, Debug)]
-pub(super) struct Link {
-    /// The joint's place in their list, and the step's in the joint.
-    pub step: (usize, usize),
-    pub freedom: Freedom,
-    /// The link that carries it; none on the ground.
-    pub parent: Option<usize>,
-    /// From the axes of its freedom to those of its parent.
-    pub fixed: Value,
-    /// Its origin, from its parent's, in the parent's axes, where it has not slid.
-    pub offset: Value,
-    /// What the recursion counts to it: mass, first moment, tensor about the origin.
-    pub counted: (Id, Value, Value),
-}
+use crate::system::link::{Freedom, Link, steiner};
 
 /// Where a body is on its link, or on the ground.
 #[derive(Clone, Debug)]
@@ -127,7 +112,7 @@ fn seat(pool: &mut Pool, body: &Body, index: usize, link: Option<usize>, (axes, 
     let centre = back.multiply(pool, origin).negate(pool);
     let tensor = body.mobility.inverse(pool);
     let central = back.multiply(pool, &tensor).multiply(pool, &axes);
-    Seat { body: index, link, axes, centre, central: symmetric(&central) }
+    Seat { body: index, link, axes, centre, central: central.symmetric() }
 }
 
 /// Counts a body to its link.
@@ -161,20 +146,7 @@ fn lighten(pool: &mut Pool, links: &mut [Link], index: usize) {
     let shifted = steiner(pool, mass, &along, &link.offset);
     let mass_there = link.offset.multiply(pool, &Value::scalar(mass));
     let (own_mass, own_first, own_about) = links[parent].counted.clone();
-    let about = own_about.add(pool, &symmetric(&turned)).add(pool, &shifted);
+    let about = own_about.add(pool, &turned.symmetric()).add(pool, &shifted);
     let first = own_first.add(pool, &along).add(pool, &mass_there);
     links[parent].counted = (pool.add(own_mass, mass), first, about);
-}
-
-/// What a tensor about a point gains seen from elsewhere: the point is at `by`, where the first moment about it is
-/// `first`.
-fn steiner(pool: &mut Pool, mass: Id, first: &Value, by: &Value) -> Value {
-    let moment = by.multiply(pool, &Value::scalar(mass));
-    let twice = first.scale(pool, 2.0);
-    let size = moment.add(pool, &twice).dot(pool, by);
-    let size = Value::diagonal(pool, &[size; 3]);
-    let half = moment.add(pool, first);
-    let (one, other) = (half.outer(pool, by), by.outer(pool, first));
-    let sum = one.add(pool, &other).negate(pool);
-    symmetric(&size.add(pool, &sum))
 }

@@ -6,14 +6,14 @@
 //! their forces have so.
 
 use super::bodies::{self, Body};
-use super::joints::{Freedom, Joint, Kind, Moves};
-use super::links::{Link, Seat};
+use super::joints::{Joint, Kind};
+use super::links::Seat;
 use super::motion;
 use super::numbers;
-use super::recursion::{Moved, Own};
 use crate::expr::{Id, Node, Pool};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
+use crate::system::link::{Freedom, Link, Moved, Moves, Own};
 use crate::system::reduce::is_constant;
 
 /// A tree of joints with its links and the bodies on them.

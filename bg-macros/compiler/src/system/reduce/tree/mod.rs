@@ -28,14 +28,15 @@ use super::{closing, friction, is_constant, turned};
 use crate::expr::{Environment, Id, Node, Pool, Symbol, exchange, partial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Kind, Origin, State, StateEquations};
+use crate::system::inverse::InverseDynamics;
+use crate::system::link::{Freedom, Link, Moved, Moves};
 use bodies::{Body, velocity};
 use guessed::Guessed;
-use joints::{Freedom, Joint, Moves};
-use links::Link;
+use joints::Joint;
 use loads::{Loads, Tree};
 use motion::Motion;
 use reactions::Wanted;
-use recursion::{Accelerations, Moved};
+use recursion::Accelerations;
 use relative::Coordinated;
 
 /// Whether there is anything to look at: rows of rigid joints.
@@ -84,7 +85,9 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     }
     motion.energies(equations, &bodies, &seats);
     let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
-    motion.momenta(equations, &tree, &found, &ground);
+    for (state, rate) in motion.rates(&mut equations.pool, &tree, (&motion.spins, &found), &ground) {
+        equations.states[state].rate = rate;
+    }
     let reactions = wanted.images(&mut equations.pool, &tree, (&moved, &motion, &found), &coordinates)?;
     for (index, body) in bodies.iter().enumerate() {
         for (k, &spin) in body.spin.iter().enumerate() {
@@ -106,6 +109,8 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
         report.say(state, Fate::Equal(name));
         images.extend([(Symbol::state(state), place), (turn, equations.pool.zero())]);
     }
+    let next = first + 2 * coordinates.iter().map(Vec::len).sum::<usize>();
+    equations.inverse = inverse(equations, &tree, (&moved, &motion, &found), (&ground, next));
     let integrated = become_states(equations, &tree, (&moved, &found.rates), &starts, report)?;
     let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
     for (coordinate, state) in integrated {
@@ -118,6 +123,45 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     equations.replace(&|symbol| places.get(&symbol).copied());
     super::live::keep_states(equations, report, &kept);
     Some(())
+}
+
+/// What the accelerations of the links take, where that is known here; from this number on symbols are free.
+fn inverse(
+    equations: &mut StateEquations,
+    tree: &Tree<'_>,
+    (moved, motion, found): (&[Moved], &Motion, &Accelerations),
+    (ground, next): (&Value, usize),
+) -> Option<InverseDynamics> {
+    if !InverseDynamics::covers(tree.links) {
+        return None;
+    }
+    let mut inverse = InverseDynamics {
+        links: tree.links.to_vec(),
+        moved: moved.to_vec(),
+        spins: motion.spins.clone(),
+        ground: ground.clone(),
+        rates: found.rates.clone(),
+        own: tree
+            .links
+            .iter()
+            .zip(&found.links)
+            .map(|(link, own)| (!link.freedom.has_coordinate()).then(|| own.clone()))
+            .collect(),
+        unknowns: InverseDynamics::numbered(tree.links, next),
+        written: Vec::new(),
+    };
+    let (mut spins, mut by_unknowns) =
+        (motion.spins.clone(), Accelerations { rates: Vec::new(), links: found.links.clone() });
+    for (link, _) in inverse.own.iter().enumerate().filter(|(_, own)| own.is_some()) {
+        let mut vector = |first: usize| {
+            Value((first..first + 3).map(|k| equations.pool.symbol(inverse.symbol((link, k)))).collect())
+        };
+        spins[link] = vector(0);
+        by_unknowns.links[link] = [vector(3), vector(6)];
+    }
+    let rates = motion.rates(&mut equations.pool, tree, (&spins, &by_unknowns), ground);
+    inverse.written = rates.into_iter().map(|(state, written)| [equations.states[state].rate, written]).collect();
+    Some(inverse)
 }
 
 /// Puts the place and the speed of each step into states of its body; the symbol of each of these coordinates, with its

@@ -6,14 +6,15 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, symbols, velocity};
-use super::joints::{Freedom, Joint, Kind, Moves};
-use super::links::{Link, Seat};
+use super::joints::{Joint, Kind};
+use super::links::Seat;
 use super::loads::Tree;
 use super::numbers;
-use super::recursion::{Accelerations, Moved, down, rate_of_angular, spins};
+use super::recursion::{Accelerations, rate_of_angular, spins};
 use crate::expr::{Function, Id, Pool, Symbol, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
+use crate::system::link::{Freedom, Link, Moved, Moves, down};
 
 /// The coordinates of the steps of all joints, from this symbol on: two for each step.
 pub(super) fn coordinates(pool: &mut Pool, first: usize, joints: &[Joint]) -> Vec<Vec<Moves>> {
@@ -129,15 +130,15 @@ impl Motion {
         images
     }
 
-    /// Writes the rates of the momenta that bodies keep.
-    pub fn momenta(
+    /// The rates of the momenta that bodies keep, with these angular velocities and accelerations of the links.
+    pub fn rates(
         &self,
-        equations: &mut StateEquations,
+        pool: &mut Pool,
         tree: &Tree<'_>,
-        accelerations: &Accelerations,
+        (spins, accelerations): (&[Value], &Accelerations),
         ground: &Value,
-    ) {
-        let StateEquations { pool, states, .. } = equations;
+    ) -> Vec<(usize, Id)> {
+        let mut rates: Vec<(usize, Id)> = Vec::new();
         for seat in tree.seats {
             let Some(link) = seat.link.filter(|&link| !tree.links[link].freedom.has_coordinate()) else { continue };
             if tree.joints[tree.links[link].step.0].child != seat.body {
@@ -145,19 +146,17 @@ impl Motion {
             }
             let body = &tree.bodies[seat.body];
             let [turning, there] = &accelerations.links[link];
-            let angular = rate_of_angular(pool, &seat.central, &self.spins[link], turning);
+            let angular = rate_of_angular(pool, &seat.central, &spins[link], turning);
             let angular = self.axes[link].multiply(pool, &angular);
-            let mut rates: Vec<(usize, Id)> = body.angular.into_iter().zip(angular.0).collect();
+            rates.extend(body.angular.into_iter().zip(angular.0));
             if tree.links[link].freedom == Freedom::Free {
                 let falls = ground.negate(pool);
                 let linear = self.axes[link].multiply(pool, there).add(pool, &falls);
                 let linear = linear.multiply(pool, &Value::scalar(body.mass));
                 rates.extend(body.linear.into_iter().zip(linear.0));
             }
-            for (state, rate) in rates {
-                states[state].rate = rate;
-            }
         }
+        rates
     }
 
     /// Writes the kinetic energies in the links' axes.

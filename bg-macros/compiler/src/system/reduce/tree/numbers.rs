@@ -113,11 +113,6 @@ pub(super) fn matrix(pool: &mut Pool, of: &Matrix) -> Value {
     Value(of.iter().map(|&part| pool.number(part)).collect())
 }
 
-/// A matrix whose lower half is the upper one, but for rounding.
-pub(super) fn symmetric(of: &Value) -> Value {
-    Value((0..9).map(|k| of.0[3 * (k / 3).min(k % 3) + (k / 3).max(k % 3)]).collect())
-}
-
 /// Nodes with functions of numbers, as `cos(0.3)`, as numbers.
 pub(super) fn folded(pool: &mut Pool, ids: &[Id]) -> Vec<Id> {
     let calls = pool.reachable(ids).into_iter().filter(|&id| {

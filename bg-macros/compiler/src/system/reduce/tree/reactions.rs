@@ -9,15 +9,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, symbols};
-use super::joints::{Freedom, Joint, Moves, Probe};
+use super::joints::{Joint, Probe};
 use super::loads::Tree;
 use super::motion::Motion;
 use super::numbers;
 use super::recognition::at_places;
-use super::recursion::{Accelerations, Moved, rate_of_angular, square, up};
+use super::recursion::{Accelerations, rate_of_angular};
 use crate::expr::{Id, Pool, Symbol, partial, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
+use crate::system::link::{Freedom, Moved, Moves, square, up};
 use crate::system::reduce::is_constant;
 
 /// A row whose reaction is read.

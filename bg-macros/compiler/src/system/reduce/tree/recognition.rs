@@ -10,11 +10,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, velocity};
 use super::guessed::Guessed;
-use super::joints::{Freedom, Joint, Kind, Moves, Probe, STEPS};
+use super::joints::{Joint, Kind, Probe, STEPS};
 use super::numbers::{self, Matrix, UNIT, Vector};
 use crate::expr::{Environment, Id, Pool, Symbol, evaluate, partial, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Slip, StateEquations};
+use crate::system::link::{Freedom, Moves};
 use crate::system::reduce::joined::Choice;
 use crate::system::reduce::zero::vanishes;
 use crate::system::reduce::{closing, friction, is_constant, turned};

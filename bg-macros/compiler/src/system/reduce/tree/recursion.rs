@@ -5,50 +5,10 @@
 //! of the links' origins, so that no velocity of a point is needed; what turning does is linear in the six products of
 //! an angular velocity's components. Gravity is an acceleration of the ground.
 
-use super::joints::{Freedom, Moves};
-use super::links::Link;
-use super::numbers::symmetric;
 use crate::expr::{Id, Pool};
 use crate::system::Value;
 use crate::system::equations::definite::Factors;
-
-/// What moves a link.
-#[derive(Clone, Debug)]
-pub(super) struct Moved {
-    pub moves: Moves,
-    /// Its origin, from its parent's, in the parent's axes.
-    pub offset: Value,
-    /// The torque about its hinge, or the force along its slide.
-    pub effort: Id,
-    /// Moment about its origin and force, in its axes.
-    pub load: [Value; 2],
-    /// Of a link whose body keeps its orientation.
-    pub own: Option<Own>,
-}
-
-/// What the states of a body say of its link.
-#[derive(Clone, Debug)]
-pub(super) struct Own {
-    /// From its axes to its parent's.
-    pub turned: Value,
-    /// Its angular velocity, in its axes.
-    pub spin: Value,
-    /// Of one that moves freely the velocity of its origin, in its axes.
-    pub fast: Option<Value>,
-}
-
-impl Moved {
-    /// What moves a link without a load.
-    pub fn new(pool: &mut Pool, link: &Link, moves: Moves, own: Option<Own>) -> Self {
-        let (zero, still) = (pool.zero(), Value::zero(pool, 3));
-        let mut offset = link.offset.clone();
-        if link.freedom == Freedom::Slide {
-            let by = link.fixed.multiply(pool, &Value(vec![zero, zero, moves.place]));
-            offset = offset.add(pool, &by);
-        }
-        Self { moves, offset, effort: zero, load: [still.clone(), still], own }
-    }
-}
+use crate::system::link::{Freedom, Link, Moved, beside_speed, brought, down, gyroscopic, matrix_up, pull, square, up};
 
 /// A moment is J a + H b + n, a force H^T a + M b + f, by the angular acceleration a and the acceleration b.
 #[derive(Clone, Debug)]
@@ -138,13 +98,11 @@ pub(super) fn accelerations(
     let mut rates = Vec::new();
     for (k, link) in links.iter().enumerate() {
         let still = [Value::zero(pool, 3), ground.clone()];
-        let [turning, there] = link.parent.map_or(still, |parent| accelerations[parent].clone());
-        let beside = turning.cross(pool, &moved[k].offset);
-        let there = there.add(pool, &beside).add(pool, &pulls[k]);
-        let mut there = down(pool, link, &moved[k], &there);
+        let under = link.parent.map_or(still, |parent| accelerations[parent].clone());
+        let [turning, mut there] = brought(pool, link, &moved[k], &under, &pulls[k]);
         let (rate, turning) = match all[k].clone().expect("every link is gone through") {
             Known::Step { by, rate, turning: own } => {
-                let mut turning = down(pool, link, &moved[k], &turning).add(pool, &own);
+                let mut turning = turning.add(pool, &own);
                 let parts = [by[0].dot(pool, &turning), by[1].dot(pool, &there)];
                 let rate = pool.linear(0.0, &[(rate, 1.0), (parts[0], -1.0), (parts[1], -1.0)]);
                 let along = if link.freedom == Freedom::Turn { &mut turning } else { &mut there };
@@ -171,20 +129,6 @@ pub(super) fn rate_of_angular(pool: &mut Pool, central: &Value, spin: &Value, tu
     let square = square(pool, spin);
     let beside = gyroscopic(pool, central, &square);
     central.multiply(pool, turning).add(pool, &beside)
-}
-
-/// How a link's origin is accelerated by the turning of its parent and its own sliding.
-fn pull(pool: &mut Pool, link: &Link, own: &Moved, (squares, spins): (&[Value], &[Value])) -> Value {
-    let Some(parent) = link.parent else { return Value::zero(pool, 3) };
-    let pull = squares[parent].multiply(pool, &own.offset);
-    if link.freedom != Freedom::Slide {
-        return pull;
-    }
-    let zero = pool.zero();
-    let twice = pool.scale(2.0, own.moves.speed);
-    let sliding = link.fixed.multiply(pool, &Value(vec![zero, zero, twice]));
-    let beside = spins[parent].cross(pool, &sliding);
-    pull.add(pool, &beside)
 }
 
 impl Articulated {
@@ -221,46 +165,6 @@ fn rigid(pool: &mut Pool, link: &Link, own: &Moved, square: &Value) -> Articulat
     Articulated { inertia: [about.clone(), across, heavy], bias }
 }
 
-/// w x (w x ) as a matrix, w w^T - w^2.
-pub(super) fn square(pool: &mut Pool, spin: &Value) -> Value {
-    let w = &spin.0;
-    let squares: Vec<Id> = w.iter().map(|&part| pool.powi(part, 2)).collect();
-    Value(
-        (0..9)
-            .map(|k| {
-                let (row, column) = (k / 3, k % 3);
-                if row == column {
-                    let others = [squares[(row + 1) % 3], squares[(row + 2) % 3]];
-                    let sum = pool.sum(&others);
-                    pool.neg(sum)
-                } else {
-                    pool.mul(w[row], w[column])
-                }
-            })
-            .collect(),
-    )
-}
-
-/// w x I w by the products of w's components: y I_z - z I_y of the vectors I w w^T.
-fn gyroscopic(pool: &mut Pool, about: &Value, square: &Value) -> Value {
-    let at = |row: usize, column: usize| about.0[3 * (row % 3) + column % 3];
-    let product = |row: usize, column: usize| square.0[3 * (row % 3) + column % 3];
-    Value(
-        (0..3)
-            .map(|i| {
-                let (j, k) = (i + 1, i + 2);
-                let apart = pool.sub(at(k, k), at(j, j));
-                // The diagonal of w w^T - w^2 differs as the squares do.
-                let squares = pool.sub(product(j, j), product(k, k));
-                let parts = [(apart, product(j, k)), (at(j, k), squares), (at(i, k), product(i, j))];
-                let mut terms: Vec<(Id, f64)> = parts.iter().map(|&(a, b)| (pool.mul(a, b), 1.0)).collect();
-                terms.push((pool.mul(at(i, j), product(i, k)), -1.0));
-                pool.linear(0.0, &terms)
-            })
-            .collect(),
-    )
-}
-
 /// A link seen through a turn or a slide.
 fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, spin: &Value) -> (Known, Articulated) {
     let [turning, coupling, pushing] = &body.inertia;
@@ -285,8 +189,8 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
         less(pool, coupling, &column, &by[1]),
         less(pool, pushing, &row, &by[1]),
     ];
-    left[0] = symmetric(&left[0]);
-    left[2] = symmetric(&left[2]);
+    left[0] = left[0].symmetric();
+    left[2] = left[2].symmetric();
     // What the freedom takes no effort along.
     let (own_block, of_coupling) = match freedom {
         Freedom::Turn => (0, [6, 7, 8]),
@@ -298,14 +202,7 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
     for k in of_coupling {
         left[1].0[k] = zero;
     }
-    // w x z times the hinge's speed.
-    let own_turning = match freedom {
-        Freedom::Turn => {
-            let (x, y) = (pool.mul(spin.0[1], own.moves.speed), pool.mul(spin.0[0], own.moves.speed));
-            Value(vec![x, pool.neg(y), zero])
-        }
-        _ => Value::zero(pool, 3),
-    };
+    let own_turning = beside_speed(pool, freedom, own, spin);
     let mut bias = [column, row].map(|of| of.multiply(pool, &Value::scalar(rate)));
     for (k, bias) in bias.iter_mut().enumerate() {
         let turned = if k == 0 {
@@ -327,7 +224,7 @@ fn release_ball(pool: &mut Pool, body: &Articulated) -> (Known, Articulated) {
     let still = inverse.multiply(pool, &body.bias[0]).negate(pool);
     let back = coupling.transpose();
     let less = back.multiply(pool, &by).negate(pool);
-    let pushing = symmetric(&pushing.add(pool, &less));
+    let pushing = pushing.add(pool, &less).symmetric();
     let force = back.multiply(pool, &still).add(pool, &body.bias[1]);
     let (none, nothing) = (Value::zero(pool, 9), Value::zero(pool, 3));
     (Known::Ball(still, by), Articulated { inertia: [none.clone(), none, pushing], bias: [nothing, force] })
@@ -336,14 +233,11 @@ fn release_ball(pool: &mut Pool, body: &Articulated) -> (Known, Articulated) {
 /// A link without its hinge, in the axes of its parent and about the parent's origin.
 fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Value) -> Articulated {
     let [turning, coupling, pushing] = of.inertia;
-    let turn = |pool: &mut Pool, matrix: Value| {
-        if let Some(own) = &own.own {
-            return own.turned.multiply(pool, &matrix).multiply(pool, &own.turned.transpose());
-        }
-        let about = about_third(pool, own, &matrix);
-        link.fixed.multiply(pool, &about).multiply(pool, &link.fixed.transpose())
-    };
-    let (turning, coupling, pushing) = (turn(pool, turning), turn(pool, coupling), turn(pool, pushing));
+    let (turning, coupling, pushing) = (
+        matrix_up(pool, link, own, &turning),
+        matrix_up(pool, link, own, &coupling),
+        matrix_up(pool, link, own, &pushing),
+    );
     let [moment, force] = of.bias.map(|bias| up(pool, link, own, &bias));
     let (first, second) = (coupling.multiply(pool, pull), pushing.multiply(pool, pull));
     let (moment, force) = (moment.add(pool, &first), force.add(pool, &second));
@@ -353,55 +247,6 @@ fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Va
     let lever = skew.multiply(pool, &pushing);
     let shifted = coupling.add(pool, &lever);
     let (one, other) = (skew.multiply(pool, &coupling.transpose()), shifted.multiply(pool, &skew).negate(pool));
-    let turning = symmetric(&turning.add(pool, &one).add(pool, &other));
+    let turning = turning.add(pool, &one).add(pool, &other).symmetric();
     Articulated { inertia: [turning, shifted, pushing], bias: [moment, force] }
-}
-
-/// R of a matrix R A R^T turned about the third axis, where A's parts that are equal are one.
-fn about_third(pool: &mut Pool, own: &Moved, of: &Value) -> Value {
-    if pool.is_zero(own.moves.sine) {
-        return of.clone();
-    }
-    let (c, s) = (own.moves.cosine, own.moves.sine);
-    let a = &of.0;
-    let difference = pool.sub(a[0], a[4]);
-    let sides = pool.add(a[1], a[3]);
-    let products = [pool.mul(s, difference), pool.mul(c, sides)];
-    let mixed = pool.sum(&products);
-    let (sine, cosine) = (pool.mul(s, mixed), pool.mul(c, mixed));
-    let mut turned = a.clone();
-    turned[0] = pool.sub(a[0], sine);
-    turned[4] = pool.add(a[4], sine);
-    turned[1] = pool.sub(cosine, a[3]);
-    turned[3] = pool.sub(cosine, a[1]);
-    for [x, y] in [[2, 5], [6, 7]] {
-        let [first, second] = rotated(pool, [c, s], [a[x], a[y]]);
-        (turned[x], turned[y]) = (first, second);
-    }
-    Value(turned)
-}
-
-fn rotated(pool: &mut Pool, [c, s]: [Id; 2], [x, y]: [Id; 2]) -> [Id; 2] {
-    let products = [pool.mul(c, x), pool.mul(s, y), pool.mul(s, x), pool.mul(c, y)];
-    [pool.sub(products[0], products[1]), pool.add(products[2], products[3])]
-}
-
-/// A vector of a link in its parent's axes.
-pub(super) fn up(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
-    if let Some(own) = &own.own {
-        return own.turned.multiply(pool, of);
-    }
-    let [x, y] = rotated(pool, [own.moves.cosine, own.moves.sine], [of.0[0], of.0[1]]);
-    link.fixed.multiply(pool, &Value(vec![x, y, of.0[2]]))
-}
-
-/// A vector of a link's parent in the link's axes.
-pub(super) fn down(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
-    if let Some(own) = &own.own {
-        return own.turned.transpose().multiply(pool, of);
-    }
-    let inside = link.fixed.transpose().multiply(pool, of);
-    let minus = pool.neg(own.moves.sine);
-    let [x, y] = rotated(pool, [own.moves.cosine, minus], [inside.0[0], inside.0[1]]);
-    Value(vec![x, y, inside.0[2]])
 }

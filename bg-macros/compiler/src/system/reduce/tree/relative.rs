@@ -9,10 +9,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::bodies::{Body, velocity};
-use super::joints::{Joint, Moves, Probe};
+use super::joints::{Joint, Probe};
 use crate::expr::{Id, Node, Pool, Symbol, children, exchange, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
+use crate::system::link::Moves;
 use crate::system::reduce::zero::vanishes_at_places;
 
 /// More bodies are not looked at together: those that a sum reads, and those between them.

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use crate::expr::{Environment, Id, Symbol, derivative, evaluate};
+use crate::expr::{Environment, Id, Symbol, derivative, evaluate, substitute};
+use crate::program::{Request, schedule};
 use crate::random::Random;
-use crate::system::equations::{Origin, State};
+use crate::system::equations::{Origin, State, StateEquations};
+use crate::system::jacobian::{self, Jacobian};
 use crate::system::reduce::solve_reactions;
 use crate::system::reduce::tests::{Draw, Scene, scene};
 
@@ -419,4 +421,142 @@ fn pictures_show_what_is_known() {
     let ids: Vec<Id> = reduced.into_iter().flatten().flatten().copied().collect();
     let values = evaluate(&scene.reduced.pool, &ids, &Environment { states: &states, ..Environment::default() });
     assert!(values.iter().all(|value| value.is_finite()), "{values:?}");
+}
+
+/// The equations of a scene as they are differentiated: their reactions are symbols.
+fn arranged(statements: &str) -> StateEquations {
+    let text = format!("graph G {{ {statements} scenes only; scene Reduced {{ tune {{}} }} }}");
+    let source = crate::source::syntax::parse(text.parse().expect("tokens")).unwrap_or_else(|_| panic!("{statements}"));
+    let variant = crate::source::scene::variants(&source.graphs[0]).expect("scenes").remove(1);
+    crate::pipeline::arrange(&variant).unwrap_or_else(|faults| panic!("{faults:?}")).equations
+}
+
+/// df/dx in a state: unknowns beside the states are eliminated by their equations.
+fn matrix(jacobian: &Jacobian, environment: &Environment<'_>, n: usize) -> Vec<Vec<f64>> {
+    let size = n + jacobian.unknowns.len();
+    let ids: Vec<Id> = jacobian.entries.iter().map(|entry| entry.value).collect();
+    let mut pool = jacobian.pool.clone();
+    let one = pool.one();
+    let ids = substitute(&mut pool, &ids, &|symbol| matches!(symbol, Symbol::Kept(_)).then_some(one));
+    let mut rows = vec![vec![0.0; size]; size];
+    for (entry, value) in jacobian.entries.iter().zip(evaluate(&pool, &ids, environment)) {
+        rows[entry.row][entry.column] = value;
+    }
+    for column in (n..size).rev() {
+        let of_largest = |&row: &usize| rows[row][column].abs();
+        let pivot = (n..=column).max_by(|a, b| of_largest(a).total_cmp(&of_largest(b))).expect("a row");
+        rows.swap(pivot, column);
+        let (pivot, own) = (rows[column].clone(), rows[column][column]);
+        for row in (0..size).filter(|&row| row != column) {
+            let factor = rows[row][column] / own;
+            rows[row].iter_mut().zip(&pivot).for_each(|(entry, by)| *entry -= factor * by);
+        }
+    }
+    rows.truncate(n);
+    rows.iter_mut().for_each(|row| row.truncate(n));
+    rows
+}
+
+/// Panics unless the derivatives with accelerations as unknowns are those entry by entry, in states at random; gives the
+/// unknowns and the operations of both with df/dt.
+fn same_derivatives(statements: &str) -> (usize, [usize; 2]) {
+    let equations = arranged(statements);
+    let n = equations.states.len();
+    let found = jacobian::differentiate(&equations);
+    let expected = jacobian::by_entries(&equations);
+    let mut draw = Draw(Random::new(11));
+    for _ in 0..4 {
+        let mut states: Vec<f64> = equations.states.iter().map(|_| draw.number()).collect();
+        turn(&equations.states, &mut states, &mut draw);
+        let inputs: Vec<f64> = equations.inputs.iter().map(|_| draw.number()).collect();
+        let negative: Vec<bool> = equations.switches.iter().map(|_| draw.number() > 0.0).collect();
+        let environment =
+            Environment { states: &states, inputs: &inputs, negative: &negative, time: 0.3, ..Environment::default() };
+        let [found, expected] = [&found, &expected].map(|of| matrix(of, &environment, n));
+        let size = expected.iter().flatten().fold(1.0_f64, |size, entry| size.max(entry.abs()));
+        for (row, column) in (0..n).flat_map(|row| (0..n).map(move |column| (row, column))) {
+            let (found, expected) = (found[row][column], expected[row][column]);
+            let names = [row, column].map(|state| &equations.states[state].name);
+            assert!((found - expected).abs() < 1e-10 * size, "{names:?}: {found} {expected}\n{statements}");
+        }
+    }
+    let count = |mut of: Jacobian| {
+        let roots = of.roots();
+        schedule(&mut of.pool, [Request { name: "jacobian", roots: &roots }]).routines[0].counts.total()
+    };
+    (found.unknowns.len(), [found, expected].map(count))
+}
+
+/// Derivatives of chains and trees with joints of all kinds, with loads and drives that depend on the motion: as many
+/// unknowns as freedoms.
+#[test]
+fn derivatives_by_accelerations_are_those_entry_by_entry() {
+    let loads = "input push: N*m; drive m on j1 torque = 3 - 2 * j1.angle - 0.3 * j1.speed + push; drive n on j0 torque = 1.5 * j1.speed;
+        drive f on b1.low force = [1, 2, 3]; drive twist on b1 torque = [0.3, 0, 0.1];
+        spring s (ground.O -> b1.low) { stiffness 20; length 0.1; damping 0.4; }";
+    for (text, freedoms) in [
+        (format!("{} {loads} {}", chain(&["y", "z"], ""), observed(2, "")), 2),
+        (format!("{} {}", branches(&["z", "x"], ""), observed(3, "")), 3),
+        (format!("{} {}", chain(&["z", "x", "x", "y", "z"], ""), observed(5, "")), 5),
+    ] {
+        assert_eq!(same_derivatives(&text).0, freedoms);
+    }
+    for (kinds, freedoms) in [
+        (&["revolute y", "prismatic x", "revolute x"][..], 3),
+        (&["prismatic x", "revolute y", "<prismatic z"], 3),
+        (&["cylindrical z", "revolute x"], 3),
+        (&["universal x y", "fixed", "<revolute z"], 3),
+    ] {
+        let kinds: Vec<String> = kinds.iter().map(|&kind| kind.to_owned()).collect();
+        let text = format!("{} {}", joined(&kinds, ""), observed(kinds.len(), ""));
+        assert_eq!(same_derivatives(&text).0, freedoms, "{kinds:?}");
+    }
+}
+
+/// Of a body on no joint, and of one on a ball at the ground, motion and accelerations are unknowns; a ball farther out and
+/// dry friction have the derivatives of the rates.
+#[test]
+fn derivatives_of_bodies_that_keep_their_orientation() {
+    let floating = joined(&["revolute y", "<universal x y", "prismatic z"].map(str::to_owned), "")
+        .replace(
+            "ground { point O = [0, 0, 0.3]; }",
+            "ground { point O = [0, 0, 0.3]; }
+             body base { mass 4; inertia [0.4, 0.5, 0.6]; point hip = [0.1, 0, -0.3]; start hip at [0, 0, 0.3]; }
+             spring s (ground.O -> base) { stiffness 20; length 0.1; damping 0.4; }",
+        )
+        .replace("ground.O -> b0", "base.hip -> b0");
+    let of = |kinds: &[&str], others: &str| {
+        let kinds: Vec<String> = kinds.iter().map(|&kind| kind.to_owned()).collect();
+        format!("{} {others} {}", joined(&kinds, ""), observed(kinds.len(), ""))
+    };
+    for (text, unknowns) in [
+        (format!("{floating} {}", observed(3, "x: m = base.position; r = base.orientation;")), 9 + 4),
+        (of(&["spherical", "revolute x", "prismatic y"], ""), 9 + 2),
+        (of(&["revolute y", "spherical"], ""), 0),
+        (of(&["revolute y", "revolute x"], "friction brake on j1 { coulomb 5; viscous 0.3; }"), 0),
+    ] {
+        assert_eq!(same_derivatives(&text).0, unknowns, "{text}");
+    }
+}
+
+/// Reactions of joints that close loops are unknowns beside the accelerations.
+#[test]
+fn derivatives_of_loops_have_accelerations_and_reactions() {
+    let grounded = chain(&["y", "z", "x", "y"], "").replacen("point O", "point P = [1.1, 0.2, -2.5]; point O", 1);
+    for (others, reactions) in [("spherical", 3), ("cylindrical z", 4)] {
+        let shut = format!("joint shut: {others} (ground.P -> b3.low) {{ rigid; }}");
+        let text = format!("{grounded} {shut} {}", observed(4, ""));
+        assert_eq!(same_derivatives(&text).0, 4 + reactions, "{others}");
+    }
+}
+
+/// Pinned: with df/dt, beside those entry by entry.
+#[test]
+fn operations_of_derivatives() {
+    let count = |axes: &[&str]| {
+        let angles: String = (0..axes.len()).map(|k| format!("a{k}: rad = j{k}.angle; ")).collect();
+        same_derivatives(&format!("{} observe {{ {angles} }}", chain(axes, ""))).1
+    };
+    assert_eq!(count(&["y", "z"]), [216, 286]);
+    assert_eq!(count(&["y", "z", "y", "z"]), [1896, 3987]);
 }
