@@ -48,6 +48,8 @@ pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
         for effort in &efforts {
             let row = n + accelerations.iter().position(|&of| of == effort.of).expect("an effort gives an unknown");
             let taken = taken(&mut pool, effort, &changes, own.copied());
+            let [slides, _] = held(&mut pool, inverse, effort.of);
+            let taken = pool.mul(slides, taken);
             slopes[row] = pool.add(taken, slopes[row]);
         }
         let entry = |(row, value)| Entry { row, column, value };
@@ -76,10 +78,23 @@ fn flow_rates(pool: &mut Pool, equations: &StateEquations, rates: &[Id]) -> Vec<
     derivative(pool, &flows, &seeds)
 }
 
+/// 1 where a link slides or nothing holds it, else 0; and what a link that sticks has in its equation: the rate of its speed
+/// is known.
+fn held(pool: &mut Pool, inverse: &InverseDynamics, of: (usize, usize)) -> [Id; 2] {
+    let Some(locked) = inverse.moved[of.0].locked else { return [pool.one(), pool.zero()] };
+    let (slides, unknown) = (locked.slides(pool), pool.symbol(inverse.symbol(of)));
+    let apart = pool.sub(unknown, locked.rate);
+    [slides, pool.mul(locked.acts, apart)]
+}
+
 /// What of an unknown's equation is no effort that accelerations take: less what acts, or the unknown less its value.
 fn left_side(pool: &mut Pool, inverse: &InverseDynamics, efforts: &[Row], of: (usize, usize)) -> Id {
     match efforts.iter().find(|effort| effort.of == of) {
-        Some(effort) => pool.neg(effort.acting),
+        Some(effort) => {
+            let [slides, held] = held(pool, inverse, of);
+            let acting = pool.mul(slides, effort.acting);
+            pool.sub(held, acting)
+        }
         None => {
             let unknown = pool.symbol(inverse.symbol(of));
             pool.sub(unknown, inverse.value(of))

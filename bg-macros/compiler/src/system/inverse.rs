@@ -105,9 +105,10 @@ impl InverseDynamics {
     /// Every expression that depends on states.
     fn roots(&mut self) -> Vec<&mut Id> {
         let mut roots: Vec<&mut Id> = Vec::new();
-        for Moved { moves, offset, effort, load, own } in &mut self.moved {
+        for Moved { moves, offset, effort, load, locked, own } in &mut self.moved {
             roots.extend([&mut moves.place, &mut moves.cosine, &mut moves.sine, &mut moves.speed, effort]);
             roots.extend(offset.0.iter_mut().chain(load.iter_mut().flat_map(|part| &mut part.0)));
+            roots.extend(locked.iter_mut().flat_map(|locked| [&mut locked.acts, &mut locked.rate]));
             if let Some(own) = own {
                 let parts = [Some(&mut own.turned), Some(&mut own.spin), own.fast.as_mut()];
                 roots.extend(parts.into_iter().flatten().flat_map(|part| &mut part.0));

@@ -67,8 +67,26 @@ pub struct Moved {
     pub effort: Id,
     /// Moment about its origin and force, in its axes.
     pub load: [Value; 2],
+    /// Where dry friction may hold it.
+    pub locked: Option<Locked>,
     /// Of a link whose body keeps its orientation.
     pub own: Option<Own>,
+}
+
+/// A link that dry friction may hold.
+#[derive(Clone, Copy, Debug)]
+pub struct Locked {
+    /// 1 where it sticks, else 0.
+    pub acts: Id,
+    /// The rate of its speed where it sticks.
+    pub rate: Id,
+}
+
+impl Locked {
+    /// 1 where it slides, else 0.
+    pub fn slides(&self, pool: &mut Pool) -> Id {
+        pool.linear(1.0, &[(self.acts, -1.0)])
+    }
 }
 
 /// What the states of a body say of its link.
@@ -91,7 +109,7 @@ impl Moved {
             let by = link.fixed.multiply(pool, &Value(vec![zero, zero, moves.place]));
             offset = offset.add(pool, &by);
         }
-        Self { moves, offset, effort: zero, load: [still.clone(), still], own }
+        Self { moves, offset, effort: zero, load: [still.clone(), still], locked: None, own }
     }
 }
 

@@ -19,6 +19,7 @@ mod reactions;
 mod recognition;
 mod recursion;
 mod relative;
+mod sticking;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -75,8 +76,10 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     relative::recognise(equations, coordinated);
     let (links, seats) = links::of(&mut equations.pool, &bodies, &joints);
     let tree = Tree { bodies: &bodies, joints: &joints, links: &links, seats: &seats };
-    let Loads { moved, axes, ground } = Loads::of(equations, &tree, &coordinates);
+    let Loads { mut moved, axes, ground } = Loads::of(equations, &tree, &coordinates);
     let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
+    let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
+    let sticking = sticking::lock(equations, &mut moved, &images);
     let found = recursion::accelerations(&mut equations.pool, &links, &moved, &motion.spins, &ground);
     let found = linear(equations, &links, found);
     let mut starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
@@ -84,11 +87,11 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
         of_one.iter_mut().for_each(|[_, speed]| *speed = guessed::sought(equations, *speed));
     }
     motion.energies(equations, &bodies, &seats);
-    let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
     for (state, rate) in motion.rates(&mut equations.pool, &tree, (&motion.spins, &found), &ground) {
         equations.states[state].rate = rate;
     }
-    let reactions = wanted.images(&mut equations.pool, &tree, (&moved, &motion, &found), &coordinates)?;
+    let mut reactions = wanted.images(&mut equations.pool, &tree, (&moved, &motion, &found), &coordinates)?;
+    reactions.extend(sticking::images(&mut equations.pool, &sticking, &moved, &found.needed));
     for (index, body) in bodies.iter().enumerate() {
         for (k, &spin) in body.spin.iter().enumerate() {
             // Of a body on no such joint, which keeps its states.
@@ -151,7 +154,7 @@ fn inverse(
         written: Vec::new(),
     };
     let (mut spins, mut by_unknowns) =
-        (motion.spins.clone(), Accelerations { rates: Vec::new(), links: found.links.clone() });
+        (motion.spins.clone(), Accelerations { rates: Vec::new(), links: found.links.clone(), needed: Vec::new() });
     for (link, _) in inverse.own.iter().enumerate().filter(|(_, own)| own.is_some()) {
         let mut vector = |first: usize| {
             Value((first..first + 3).map(|k| equations.pool.symbol(inverse.symbol((link, k)))).collect())
@@ -225,7 +228,7 @@ fn linear(equations: &mut StateEquations, links: &[Link], of: Accelerations) -> 
         .zip(of.links)
         .map(|(link, own)| if link.freedom.has_coordinate() { own } else { own.map(|part| Value(written(&part.0))) });
     let links = accelerated.collect();
-    Accelerations { rates, links }
+    Accelerations { rates, links, needed: of.needed }
 }
 
 /// The states that count the turns of a joint's angle and are its coordinate, which starts as they do and has their

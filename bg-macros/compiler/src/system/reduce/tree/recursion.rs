@@ -8,7 +8,9 @@
 use crate::expr::{Id, Pool};
 use crate::system::Value;
 use crate::system::equations::definite::Factors;
-use crate::system::link::{Freedom, Link, Moved, beside_speed, brought, down, gyroscopic, matrix_up, pull, square, up};
+use crate::system::link::{
+    Freedom, Link, Locked, Moved, beside_speed, brought, down, gyroscopic, matrix_up, pull, square, up,
+};
 
 /// A moment is J a + H b + n, a force H^T a + M b + f, by the angular acceleration a and the acceleration b.
 #[derive(Clone, Debug)]
@@ -42,6 +44,8 @@ pub(super) struct Accelerations {
     pub rates: Vec<Id>,
     /// The angular acceleration, and that of the origin beside the ground's, in the link's axes.
     pub links: Vec<[Value; 2]>,
+    /// Of a link that may be locked the effort along its freedom that holds it.
+    pub needed: Vec<Option<Id>>,
 }
 
 /// The angular velocity of each link, in its axes.
@@ -95,14 +99,17 @@ pub(super) fn accelerations(
         }
     }
     let mut accelerations: Vec<[Value; 2]> = Vec::new();
-    let mut rates = Vec::new();
+    let (mut rates, mut needed) = (Vec::new(), Vec::new());
     for (k, link) in links.iter().enumerate() {
         let still = [Value::zero(pool, 3), ground.clone()];
         let under = link.parent.map_or(still, |parent| accelerations[parent].clone());
+        needed.push(None);
         let [turning, mut there] = brought(pool, link, &moved[k], &under, &pulls[k]);
         let (rate, turning) = match all[k].clone().expect("every link is gone through") {
             Known::Step { by, rate, turning: own } => {
                 let mut turning = turning.add(pool, &own);
+                let locked = moved[k].locked;
+                needed[k] = locked.map(|locked| bodies[k].effort(pool, link.freedom, [&turning, &there], locked.rate));
                 let parts = [by[0].dot(pool, &turning), by[1].dot(pool, &there)];
                 let rate = pool.linear(0.0, &[(rate, 1.0), (parts[0], -1.0), (parts[1], -1.0)]);
                 let along = if link.freedom == Freedom::Turn { &mut turning } else { &mut there };
@@ -121,7 +128,7 @@ pub(super) fn accelerations(
         rates.push(rate);
         accelerations.push([turning, there]);
     }
-    Accelerations { rates, links: accelerations }
+    Accelerations { rates, links: accelerations, needed }
 }
 
 /// The rate of a body's angular momentum about its centre of mass, in its axes.
@@ -136,6 +143,24 @@ impl Articulated {
         let inertia = std::array::from_fn(|k| self.inertia[k].add(pool, &other.inertia[k]));
         let bias = std::array::from_fn(|k| self.bias[k].add(pool, &other.bias[k]));
         Self { inertia, bias }
+    }
+
+    /// The effort along a freedom that gives its speed this rate, where the link has these accelerations beside.
+    fn effort(&self, pool: &mut Pool, freedom: Freedom, [turning, there]: [&Value; 2], rate: Id) -> Id {
+        let (block, by) = (block_of(freedom), self.by_speed(freedom));
+        let along = by[block].0[2];
+        let parts = [by[0].dot(pool, turning), by[1].dot(pool, there), pool.mul(along, rate), self.bias[block].0[2]];
+        pool.sum(&parts)
+    }
+
+    /// Moment and force by the rate of the speed of a freedom.
+    fn by_speed(&self, freedom: Freedom) -> [Value; 2] {
+        let [turning, coupling, pushing] = &self.inertia;
+        let third = |of: &Value| Value(vec![of.0[2], of.0[5], of.0[8]]);
+        match freedom {
+            Freedom::Turn => [third(turning), Value(coupling.0[6..].to_vec())],
+            _ => [third(coupling), third(pushing)],
+        }
     }
 
     /// The accelerations of a link that nothing carries.
@@ -165,21 +190,33 @@ fn rigid(pool: &mut Pool, link: &Link, own: &Moved, square: &Value) -> Articulat
     Articulated { inertia: [about.clone(), across, heavy], bias }
 }
 
+/// Whether a freedom's effort is a moment or a force.
+fn block_of(freedom: Freedom) -> usize {
+    usize::from(freedom == Freedom::Slide)
+}
+
 /// A link seen through a turn or a slide.
 fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, spin: &Value) -> (Known, Articulated) {
     let [turning, coupling, pushing] = &body.inertia;
     let zero = pool.zero();
-    // Moment and force by its speed's rate.
-    let third = |of: &Value| Value(vec![of.0[2], of.0[5], of.0[8]]);
-    let (column, row, pivot) = match freedom {
-        Freedom::Turn => (third(turning), Value(coupling.0[6..].to_vec()), turning.0[8]),
-        _ => (third(coupling), third(pushing), pushing.0[8]),
-    };
+    let known = block_of(freedom);
+    let [column, row] = body.by_speed(freedom);
+    let pivot = [&column, &row][known].0[2];
     let inverse = pool.powi(pivot, -1);
+    let inverse = match &own.locked {
+        Some(locked) => {
+            let slides = locked.slides(pool);
+            pool.mul(slides, inverse)
+        }
+        None => inverse,
+    };
     let by = [column.multiply(pool, &Value::scalar(inverse)), row.multiply(pool, &Value::scalar(inverse))];
-    let known = if freedom == Freedom::Turn { 0 } else { 1 };
     let drive = pool.sub(own.effort, body.bias[known].0[2]);
-    let rate = pool.mul(drive, inverse);
+    let mut rate = pool.mul(drive, inverse);
+    if let Some(Locked { acts, rate: held }) = own.locked {
+        let held = pool.mul(acts, held);
+        rate = pool.add(rate, held);
+    }
     let less = |pool: &mut Pool, of: &Value, a: &Value, b: &Value| {
         let product = a.outer(pool, b).negate(pool);
         of.add(pool, &product)
@@ -191,16 +228,14 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
     ];
     left[0] = left[0].symmetric();
     left[2] = left[2].symmetric();
-    // What the freedom takes no effort along.
+    // What a freedom that nothing holds takes no effort along.
     let (own_block, of_coupling) = match freedom {
         Freedom::Turn => (0, [6, 7, 8]),
         _ => (2, [2, 5, 8]),
     };
-    for k in [2, 5, 6, 7, 8] {
-        left[own_block].0[k] = zero;
-    }
-    for k in of_coupling {
-        left[1].0[k] = zero;
+    if own.locked.is_none() {
+        [2, 5, 6, 7, 8].into_iter().for_each(|k| left[own_block].0[k] = zero);
+        of_coupling.into_iter().for_each(|k| left[1].0[k] = zero);
     }
     let own_turning = beside_speed(pool, freedom, own, spin);
     let mut bias = [column, row].map(|of| of.multiply(pool, &Value::scalar(rate)));
@@ -212,7 +247,9 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
         };
         *bias = bias.add(pool, &body.bias[k]).add(pool, &turned);
     }
-    bias[known].0[2] = own.effort;
+    if own.locked.is_none() {
+        bias[known].0[2] = own.effort;
+    }
     (Known::Step { by, rate, turning: own_turning }, Articulated { inertia: left, bias })
 }
 

@@ -331,6 +331,24 @@ fn put(statements: &str) -> Scene {
     Scene { literal, tuned: vec![false; reduced.parameters.len()], reduced, report }
 }
 
+/// Frictions on joints' own speeds, one on each, take a few operations a joint: beside the literal graph, sticking and
+/// sliding at random, with their efforts.
+#[test]
+fn dry_friction_of_joints_costs_as_the_number_of_hinges() {
+    let axes = ["y", "z", "x", "y"];
+    let brakes = |count: usize| -> String {
+        (0..count).map(|k| format!("friction brake{k} on j{k} {{ coulomb {}; viscous 0.3; }} ", 2 + k)).collect()
+    };
+    let efforts = |count: usize| -> String { (0..count).map(|k| format!("e{k}: N*m = brake{k}.effort; ")).collect() };
+    let of = |count: usize| put(&format!("{} {} {}", chain(&axes, ""), brakes(count), observed(4, &efforts(count))));
+    for count in [1, 2, 4] {
+        let scene = of(count);
+        assert!(scene.reduced.solution.values.is_empty(), "{}", scene.report);
+        agrees(&scene);
+    }
+    assert_eq!([0, 2, 4].map(|count| operations(&of(count))), [766, 796, 944]);
+}
+
 /// What else is held: a joint that closes a loop, dry friction, a stop; free bodies that a joint holds at the tree.
 #[test]
 fn what_else_is_held_has_the_rates_of_the_bodies() {
@@ -513,8 +531,8 @@ fn derivatives_by_accelerations_are_those_entry_by_entry() {
     }
 }
 
-/// Of a body on no joint, and of one on a ball at the ground, motion and accelerations are unknowns; a ball farther out and
-/// dry friction have the derivatives of the rates.
+/// Of a body on no joint, and of one on a ball at the ground, motion and accelerations are unknowns; a joint that sticks has
+/// a known acceleration; with a ball farther out and with stops derivatives are those of the rates.
 #[test]
 fn derivatives_of_bodies_that_keep_their_orientation() {
     let floating = joined(&["revolute y", "<universal x y", "prismatic z"].map(str::to_owned), "")
@@ -533,7 +551,8 @@ fn derivatives_of_bodies_that_keep_their_orientation() {
         (format!("{floating} {}", observed(3, "x: m = base.position; r = base.orientation;")), 9 + 4),
         (of(&["spherical", "revolute x", "prismatic y"], ""), 9 + 2),
         (of(&["revolute y", "spherical"], ""), 0),
-        (of(&["revolute y", "revolute x"], "friction brake on j1 { coulomb 5; viscous 0.3; }"), 0),
+        (of(&["revolute y", "revolute x"], "friction brake on j1 { coulomb 5; viscous 0.3; }"), 2),
+        (of(&["revolute y", "revolute x"], "stop end on j1 { at most 0.2; restitution 0.5; }"), 0),
     ] {
         assert_eq!(same_derivatives(&text).0, unknowns, "{text}");
     }
