@@ -124,6 +124,26 @@ mod tests {
     }
 
     #[test]
+    fn a_table_may_stand_in_a_file() {
+        let graph = |points: &str| {
+            format!(
+                "graph Coil {{ table flux: A -> Wb = {points}; 1 wire: electrical; R coil(i) = flux(i) / (1 s); I core = 2; wire -> coil; wire -> core; }}"
+            )
+        };
+        let of_file =
+            compiled(&[("table.bond", &graph("\"flux.csv\"")), ("flux.csv", "current [mA],flux\n0,0\n500,0.1\n")]);
+        let own = compiled(&[("points.bond", &graph("[[0 mA, 0], [500 mA, 0.1]]"))]);
+        // Rust builds anew where the points change.
+        assert_eq!(of_file.matches("include_bytes").count(), 2, "{of_file}");
+        let after = |items: &str| {
+            items.split("include_bytes").last().and_then(|rest| rest.split_once(';')).map(|(_, items)| items.to_owned())
+        };
+        assert!(after(&of_file).is_some() && after(&of_file) == after(&own), "{of_file}");
+        let missing = compiled(&[("none.bond", &graph("\"none.csv\""))]);
+        assert!(missing.contains("none.bond:1:36: [BG0901] cannot read `none.csv`"), "{missing}");
+    }
+
+    #[test]
     fn a_file_uses_others() {
         let graph = "graph Driven { part shaft: Shaft; Se f = 1; 1 j: rotation; f -> j -> shaft.end; }";
         let driven = &format!("use \"parts/shaft.bond\"; {graph}");

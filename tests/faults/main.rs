@@ -363,13 +363,14 @@ const MORE_OF_PARTS: [(&str, &str); 10] = [
 ];
 
 /// Texts that use files.
-const FILES: [(&str, &str); 6] = [
+const FILES: [(&str, &str); 7] = [
     ("BG0901", "use ▸\"shift.bond\"; graph G {}"),
     ("BG0902", "use \"circle.bond\"; graph G {}"),
     ("BG0903", "use \"0\"; graph G {}"),
     ("BG0904", "use \"shaft.bond\"; use \"needs.bond\"; graph G {}"),
     ("BG0905", "use ▸\"graph.bond\"; graph G {}"),
     ("BG0906", "graph G ▸("),
+    ("BG0907", "graph G { table curve: rpm -> N*m = ▸\"curve.csv\"; }"),
 ];
 
 /// The files that they use; one that is called as a number uses the next one.
@@ -377,6 +378,7 @@ fn marked(path: &Path) -> Result<String, String> {
     let name = path.to_str().unwrap_or_default();
     let text = match name {
         "circle.bond" => "use ▸\"circle.bond\";",
+        "curve.csv" => "speed [rpm],torque [N*m]\n0,12\n100,twelve\n",
         "shaft.bond" => "part Shaft { let a = 1; }",
         "needs.bond" => "\n part Both { part one: ▸Shaft; }",
         "graph.bond" => "graph G {}",

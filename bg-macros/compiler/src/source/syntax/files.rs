@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, LexError, Span, TokenStream, TokenTree};
 
-use super::parse;
+use super::{parse, points};
 use crate::fault::{Explain, Fault, Faults};
 use crate::source::ast::{PartPath, Source, used_parts};
 
@@ -58,7 +58,8 @@ impl Gathered {
     #[must_use]
     pub fn place(&self, span: Span) -> usize {
         let called = span.file();
-        self.files.iter().position(|file| file.called == called).unwrap_or_default()
+        let is_called = |file: &File| !file.called.is_empty() && file.called == called;
+        self.files.iter().position(is_called).unwrap_or_default()
     }
 
     /// The fault with the files' paths in its message.
@@ -81,6 +82,7 @@ pub enum FileFault {
     Many,
     Elsewhere { part: String, file: PathBuf },
     NoPart { file: PathBuf },
+    NoPoints { file: PathBuf, reason: String },
     NoText,
 }
 
@@ -92,6 +94,7 @@ impl Explain for FileFault {
             Self::Deep | Self::Many => "BG0903",
             Self::Elsewhere { .. } => "BG0904",
             Self::NoPart { .. } => "BG0905",
+            Self::NoPoints { .. } => "BG0907",
             Self::NoText => "BG0906",
         }
     }
@@ -109,6 +112,7 @@ impl Explain for FileFault {
                 format!("the part `{part}` stands in `{}`, which this file does not use", file.display())
             }
             Self::NoPart { file } => format!("`{}` has no part to use", file.display()),
+            Self::NoPoints { file, reason } => format!("`{}` has no points of a table: {reason}", file.display()),
             Self::NoText => "a bracket, a quote or a character is out of place".to_owned(),
         }
     }
@@ -125,6 +129,7 @@ impl Explain for FileFault {
             Self::Deep | Self::Many => "write parts that belong together into one file".to_owned(),
             Self::Elsewhere { .. } => "add a `use` of that file".to_owned(),
             Self::NoPart { .. } => "make a part of what is to be used, or remove this".to_owned(),
+            Self::NoPoints { .. } => "write two columns of numbers separated by commas, with a head such as `speed [rpm],torque [N*m]` or without".to_owned(),
             Self::NoText => "close what is open, and quote what is text".to_owned(),
         }
     }
@@ -138,12 +143,13 @@ pub fn gather(path: &Path, first: Opened, open: Open<'_>) -> Gathered {
     gathering.finish()
 }
 
-/// The text of a file alone, without what it uses.
+/// The text of a file alone, without what it uses; tables of other files have two points.
 ///
 /// # Errors
 /// It is made of no tokens.
 pub fn alone(text: &str) -> Result<TokenStream, Fault> {
     let tokens = text.parse().map_err(|fault: LexError| Fault::new(fault.span(), &FileFault::NoText))?;
+    let tokens = points::replaced(tokens, &mut |_, span| points::points("0,0\n1,0", span).ok());
     let own = pieces(tokens).into_iter().filter_map(|piece| match piece {
         Piece::Use(..) => None,
         Piece::Graph(tokens) | Piece::Part(tokens) | Piece::Other(tokens) => Some(tokens),
@@ -180,6 +186,7 @@ impl Gathering<'_> {
         self.gathered.files.push(File { path: path.to_owned(), text, called });
         match tokens {
             Ok(tokens) => {
+                let tokens = points::replaced(tokens, &mut |name, span| self.points(place, name, span));
                 self.around.push(place);
                 self.known[place].own =
                     pieces(tokens).into_iter().filter_map(|piece| self.own(place, piece, is_first)).collect();
@@ -211,7 +218,7 @@ impl Gathering<'_> {
         if self.known.len() >= MOST {
             return self.fault(span, &FileFault::Many);
         }
-        let folder = self.gathered.files[by].path.parent().unwrap_or(Path::new("")).to_owned();
+        let folder = self.folder(by);
         let path = folder.join(path);
         let opened = match (self.open)(&path) {
             Ok(opened) => opened,
@@ -233,6 +240,28 @@ impl Gathering<'_> {
             place
         });
         self.known[by].uses.push(place);
+    }
+
+    /// The points of a file that a table of the file `by` names.
+    fn points(&mut self, by: usize, name: &str, span: Span) -> Option<TokenStream> {
+        let folder = self.folder(by);
+        let path = folder.join(name);
+        let Opened { file, text } = match (self.open)(&path) {
+            Ok(opened) => opened,
+            Err(reason) => {
+                self.fault(span, &FileFault::Unreadable { reason, folder });
+                return None;
+            }
+        };
+        let points = points::points(&text, span);
+        self.known.push(Known { file, ..Known::default() });
+        self.gathered.files.push(File { path: path.clone(), text, called: String::new() });
+        points.map_err(|reason| self.fault(span, &FileFault::NoPoints { file: path, reason })).ok()
+    }
+
+    /// The folder of a file.
+    fn folder(&self, of: usize) -> PathBuf {
+        self.gathered.files[of].path.parent().unwrap_or(Path::new("")).to_owned()
     }
 
     /// Each file uses what it names.

@@ -22,6 +22,7 @@ pub mod files;
 mod friction;
 mod mechanism;
 mod part;
+mod points;
 mod scene;
 mod statement;
 mod token;

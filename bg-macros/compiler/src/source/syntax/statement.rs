@@ -268,6 +268,9 @@ fn table(cursor: &mut Cursor) -> Parsed<Table> {
     cursor.expect("->")?;
     let value = cursor.unit()?;
     cursor.expect("=")?;
+    if cursor.peek().is_some_and(TokenKind::is_text) {
+        return Err(cursor.note(cursor.span(), &SyntaxFault::UseInCall));
+    }
     let points = cursor.expression()?;
     let (mut between, mut beyond) = (None, None);
     while cursor.eat(",").is_some() {

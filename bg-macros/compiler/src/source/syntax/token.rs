@@ -107,6 +107,11 @@ impl TokenKind {
         }
     }
 
+    /// Whether it is a text in quotes.
+    pub fn is_text(&self) -> bool {
+        matches!(self, Self::Literal(literal) if literal.to_string().starts_with('"'))
+    }
+
     /// The literal's text when it is a number.
     pub fn number(&self) -> Option<String> {
         let Self::Literal(literal) = self else { return None };

@@ -1,0 +1,121 @@
+//! Points of tables that stand in files of their own: `table curve: rpm -> N*m = "motor.csv";`.
+//!
+//! In: the tokens of a file, what reads another one. Out: the same tokens with the points in place of the file's name, each with
+//! the unit that the head of its column gives in brackets. Two columns, separated by commas; a head may be there.
+
+use proc_macro2::{Delimiter, Group, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
+
+/// Puts points in the places of the names of files after `table .. =`. What `read` says of a file without points stands at its
+/// name.
+pub(super) fn replaced(tokens: TokenStream, read: &mut dyn FnMut(&str, Span) -> Option<TokenStream>) -> TokenStream {
+    let (mut is_table, mut is_value) = (false, false);
+    let token = |token: TokenTree| {
+        match &token {
+            TokenTree::Ident(word) if word == "table" => (is_table, is_value) = (true, false),
+            TokenTree::Punct(mark) if mark.as_char() == ';' => is_table = false,
+            TokenTree::Punct(mark) if mark.as_char() == '=' => is_value = is_table,
+            TokenTree::Literal(literal) if is_value => {
+                if let syn::Lit::Str(name) = syn::Lit::new(literal.clone())
+                    && let Some(points) = read(&name.value(), literal.span())
+                {
+                    return bracketed(points, literal.span());
+                }
+            }
+            TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => {
+                let mut inside = Group::new(Delimiter::Brace, replaced(group.stream(), read));
+                inside.set_span(group.span());
+                return inside.into();
+            }
+            _ => {}
+        }
+        token
+    };
+    tokens.into_iter().map(token).collect()
+}
+
+/// The points of a file as tokens, `[0 rpm, 12 N*m], ..`, all at one place.
+///
+/// # Errors
+/// What is wrong with its text, and in which line.
+pub(super) fn points(text: &str, span: Span) -> Result<TokenStream, String> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_reader(text.as_bytes());
+    let (mut units, mut rows) = ([TokenStream::new(), TokenStream::new()], TokenStream::new());
+    for (index, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| error.to_string())?;
+        let line = record.position().map_or(index as u64 + 1, csv::Position::line);
+        let [x, y] = record.iter().collect::<Vec<_>>()[..] else {
+            return Err(format!("line {line} has {} columns, not two", record.len()));
+        };
+        match [x, y].map(str::parse::<f64>) {
+            [Ok(x), Ok(y)] if x.is_finite() && y.is_finite() => {
+                let pair = number(x, &units[0], span).chain([comma(span)]).chain(number(y, &units[1], span)).collect();
+                rows.extend([bracketed(pair, span), comma(span)]);
+            }
+            [Err(_), Err(_)] if index == 0 => units = [unit(x, span)?, unit(y, span)?],
+            _ => return Err(format!("line {line} is no pair of numbers: `{x}, {y}`")),
+        }
+    }
+    if rows.is_empty() { Err("it has no points".to_owned()) } else { Ok(rows) }
+}
+
+/// A number with its sign and its unit.
+fn number(value: f64, unit: &TokenStream, span: Span) -> impl Iterator<Item = TokenTree> {
+    let minus = value.is_sign_negative().then(|| TokenTree::from(Punct::new('-', Spacing::Alone)));
+    let literal = TokenTree::from(Literal::f64_unsuffixed(value.abs()));
+    minus.into_iter().chain([literal]).chain(unit.clone()).map(move |token| at(token, span))
+}
+
+/// The unit in the brackets of a head, `torque [N*m]`; nothing where there is none.
+fn unit(head: &str, span: Span) -> Result<TokenStream, String> {
+    let Some((_, rest)) = head.split_once('[') else { return Ok(TokenStream::new()) };
+    let text = rest.trim_end().strip_suffix(']').unwrap_or(rest).trim();
+    text.parse::<bg_units::Unit>().map_err(|unknown| format!("the head `{head}`: {unknown}"))?;
+    let tokens: TokenStream = text.parse().map_err(|_| format!("the head `{head}` has no unit"))?;
+    Ok(tokens.into_iter().map(|token| at(token, span)).collect())
+}
+
+fn comma(span: Span) -> TokenTree {
+    at(Punct::new(',', Spacing::Alone).into(), span)
+}
+
+fn bracketed(tokens: TokenStream, span: Span) -> TokenTree {
+    at(Group::new(Delimiter::Bracket, tokens).into(), span)
+}
+
+fn at(mut token: TokenTree, span: Span) -> TokenTree {
+    token.set_span(span);
+    token
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<String, String> {
+        points(text, Span::call_site()).map(|tokens| tokens.to_string().replace(' ', ""))
+    }
+
+    #[test]
+    fn pairs_of_numbers_are_points_with_the_units_of_their_heads() {
+        assert_eq!(read("0, 12\n100,-1.5e2\n"), Ok("[0.0,12.0],[100.0,-150.0],".to_owned()));
+        assert_eq!(read("speed [rpm],torque [N*m]\n# measured\n0,12\n"), Ok("[0.0rpm,12.0N*m],".to_owned()));
+        assert_eq!(read("speed,torque\n0,12\n"), Ok("[0.0,12.0],".to_owned()));
+    }
+
+    #[test]
+    fn what_is_no_pair_is_told_with_its_line() {
+        assert_eq!(
+            read("0,1\n2\n").unwrap_err(),
+            "CSV error: record 1 (line: 2, byte: 4): found record with 1 fields, but the previous record has 2 fields"
+        );
+        assert_eq!(read("0,1,2\n").unwrap_err(), "line 1 has 3 columns, not two");
+        assert_eq!(read("0,1\n1,two\n").unwrap_err(), "line 2 is no pair of numbers: `1, two`");
+        assert_eq!(read("0,NaN\n").unwrap_err(), "line 1 is no pair of numbers: `0, NaN`");
+        assert_eq!(read("a [ells],b\n0,1\n").unwrap_err(), "the head `a [ells]`: `ells` is not a unit");
+        assert_eq!(read("").unwrap_err(), "it has no points");
+    }
+}
