@@ -14,6 +14,9 @@ pub const SETTLED: f64 = 2.0;
 pub const JOINTS: [(&str, &str); 5] =
     [("gap_12", "pin O2"), ("gap_23", "pin A"), ("gap_34", "pin B"), ("gap_15", "pin O5"), ("gap_45", "slot")];
 
+/// The outputs of the energy balance, J.
+const ENERGIES: [&str; 3] = ["stored_energy", "supplied_energy", "dissipated_energy"];
+
 /// Lines and entries of a run.
 pub type Said = (Vec<(String, String)>, Vec<Entry>);
 
@@ -22,7 +25,8 @@ pub type Said = (Vec<(String, String)>, Vec<Entry>);
 /// # Errors
 /// The run lacks a column that belongs to one it has.
 pub fn of_paper(run: &Recording) -> Result<Said, MissingColumn> {
-    let energy = run.has("supplied_energy").then(|| Energy::of(run)).transpose()?;
+    let has_energy = ENERGIES.iter().all(|name| run.has(name));
+    let energy = has_energy.then(|| Energy::of(run)).transpose()?;
     let part = energy.as_ref().filter(|energy| energy.supplied != 0.0);
     let part = part.map(|energy| energy.residual / energy.supplied.abs());
     let (gap, speed) = (largest_gap(run), crank_speed(run));
@@ -63,9 +67,8 @@ struct Energy {
 
 impl Energy {
     fn of(run: &Recording) -> Result<Self, MissingColumn> {
-        let stored = run.values("stored_energy")?;
-        let supplied = run.values("supplied_energy")?;
-        let dissipated = run.values("dissipated_energy")?;
+        let [stored, supplied, dissipated] = ENERGIES.map(|name| run.values(name));
+        let (stored, supplied, dissipated) = (stored?, supplied?, dissipated?);
         let residual = |k: usize| (stored[k] - stored[0] - (supplied[k] - dissipated[k])).abs();
         Ok(Self {
             supplied: supplied.last().copied().unwrap_or(0.0),

@@ -34,8 +34,12 @@ const MODELS: &str = "
     }
 ";
 
+/// The start counts no more from here on, s.
+const SETTLED: f64 = 1.0;
+
 fn run(model: &Rc<impl Machine + 'static>, method: Integrator, samples: Samples, t_end: f64) -> Trajectory {
-    let request = Request { method, samples, t_end, rtol: 1e-9, peaks: true, ..Request::default() };
+    let settled = Some(SETTLED);
+    let request = Request { method, samples, t_end, rtol: 1e-9, peaks: true, settled, ..Request::default() };
     Simulation::over(Rc::clone(model) as Rc<dyn Machine>, request).run().unwrap_or_else(|fault| panic!("{fault}"))
 }
 
@@ -76,13 +80,21 @@ fn peaks_are_those_of_the_solution_by_every_kind_of_method_and_at_any_samples() 
         assert_near(values(&unsampled, "x"), x, 3e-9);
         assert!((peaks(&unsampled, "x").least.t - half).abs() < 1e-3, "{method:?}");
         assert_near(values(&unsampled, "v"), [fastest(quarter), fastest(quarter + half)], 3e-9);
+        // From 1 s on it turns after two and three halves of a turn; the rest is below.
+        let late = unsampled.columns[0].settled.expect("the run goes on");
+        let turn = |halves: f64| 0.1 * (-0.1 * halves * half).exp();
+        assert_near([late.least.value, late.largest.value], [-turn(3.0), turn(2.0)], 3e-9);
+        let turned = unsampled.columns[4].settled.expect("the run goes on");
+        assert_near([turned.least.value, turned.largest.value], [3.0 * SETTLED, 9.0], 1e-8);
         assert_near(values(&unsampled, "cam"), [-1.0, 1.0], 1e-7);
         assert_near(values(&unsampled, "turn"), [0.0, 9.0], 1e-8);
         assert_eq!(values(&unsampled, "still"), [0.25; 2]);
         for samples in [Samples::Every(0.37), Samples::Every(0.001), Samples::Steps] {
             let sampled = run(&ring, method, samples, 3.0);
             for column in &sampled.columns {
-                assert_eq!(column.peaks, unsampled.recording.peaks(&column.name), "{method:?} {}", column.name);
+                let other = unsampled.columns.iter().find(|other| other.name == column.name).unwrap();
+                let both = [column, other].map(|column| (column.peaks, column.settled));
+                assert_eq!(both[0], both[1], "{method:?} {}", column.name);
                 let Peaks { least, largest } = column.peaks.unwrap();
                 let off = 1e-9 * (largest.value - least.value) + 1e-15;
                 let is_inside = |value: &f64| *value >= least.value - off && *value <= largest.value + off;

@@ -80,52 +80,30 @@
     allow(dead_code, reason = "what is shared is also for reports, which a page does not write")
 )]
 
-#[cfg(not(target_arch = "wasm32"))]
-pub mod calls;
+mod ask;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod command;
 #[cfg(not(target_arch = "wasm32"))]
-pub mod compare;
-#[cfg(not(target_arch = "wasm32"))]
 pub mod files;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod golden;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod gradient;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod identify;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod output;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod samples;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod sensitivity;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod shown;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod sweep;
-#[cfg(not(target_arch = "wasm32"))]
-pub mod tables;
-
-pub mod compiled;
-pub mod extras;
-pub mod figures;
-pub mod inputs;
-pub use bg_analysis::linear;
 pub mod live;
-pub mod machine;
-pub mod maker;
-pub mod markup;
-pub mod page;
-pub mod parameters;
-pub mod picture;
-pub mod precision;
 pub mod program;
-mod quantities;
-pub mod request;
-mod running;
-pub mod scenes;
-pub mod summary;
+mod run;
+mod show;
+mod studies;
+
+pub use ask::{compiled, inputs, machine, maker, parameters, request, scenes};
+pub use bg_analysis::linear;
+#[cfg(not(target_arch = "wasm32"))]
+pub use command::calls;
+pub use run::summary;
+#[cfg(not(target_arch = "wasm32"))]
+pub use run::{compare, samples};
+pub use show::{extras, figures, markup, page, picture};
+#[cfg(not(target_arch = "wasm32"))]
+pub use show::{output, shown, tables};
+pub use studies::precision;
+#[cfg(not(target_arch = "wasm32"))]
+pub use studies::{golden, gradient, identify, sensitivity, sweep};
 
 #[doc = include_str!("../cookbook.md")]
 pub mod cookbook {}

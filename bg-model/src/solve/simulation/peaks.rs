@@ -5,8 +5,8 @@
 //!
 //! Method: the outputs at the end of each step and at the two ends before show how they bend. Where an output may turn in
 //! the step, and beyond what is known so far, its slopes at both ends give a cubic. Where that leads beyond what is known
-//! as well, or where the middle is off the cubic, the step's dense output is searched. So most steps take one evaluation
-//! of the outputs. A step of a method of higher order is longer beside what happens in it, and looked at in several parts.
+//! as well, the step's dense output is evaluated where the cubic turns, and searched where it is off the cubic there. So most
+//! steps take one evaluation of the outputs. A step of a method of higher order is longer beside what happens in it, and looked at in several parts.
 //! At an event both sides count.
 
 use alloc::vec;
@@ -59,14 +59,6 @@ impl Peaks {
         }
         Self { least, largest }
     }
-
-    /// By how much another value has to be beyond these to count: rounding moves a constant by less.
-    fn margin(&self) -> f64 {
-        const OF_RANGE: f64 = 1e-9;
-        const OF_SIZE: f64 = 1e-6;
-        let [least, largest] = [self.least.value, self.largest.value];
-        OF_RANGE * (largest - least).max(OF_SIZE * least.abs().max(largest.abs()))
-    }
 }
 
 /// Over which time peaks are looked for.
@@ -74,20 +66,52 @@ impl Peaks {
 struct Window {
     /// From this instant on, s.
     from: f64,
-    /// For each output, as far as a step has been made there.
-    found: Vec<Option<Peaks>>,
+    /// For each output the least and the largest value; infinity where none is known yet.
+    least: Vec<f64>,
+    largest: Vec<f64>,
+    /// The instants of both, s.
+    at: Vec<[f64; 2]>,
 }
 
 impl Window {
+    fn new(from: f64, outputs: usize) -> Self {
+        let [least, largest] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| vec![end; outputs]);
+        Self { from, least, largest, at: vec![[from; 2]; outputs] }
+    }
+
     /// Takes values at `t` (s) into account.
     fn take(&mut self, t: f64, values: &[f64]) {
         if t < self.from {
             return;
         }
-        for (found, &value) in self.found.iter_mut().zip(values).filter(|(_, value)| value.is_finite()) {
-            let here = Peaks::of(Peak { t, value });
-            *found = Some(found.map_or(here, |known| known.and(here)));
+        for (index, &value) in values.iter().enumerate() {
+            if value < self.least[index] && value.is_finite() {
+                (self.least[index], self.at[index][0]) = (value, t);
+            }
+            if value > self.largest[index] && value.is_finite() {
+                (self.largest[index], self.at[index][1]) = (value, t);
+            }
         }
+    }
+
+    /// Whether these values of an output lead beyond what is known: down, and up. Rounding moves a constant by less than counts.
+    fn leads(&self, index: usize, [least, largest]: [f64; 2]) -> [bool; 2] {
+        const OF_RANGE: f64 = 1e-9;
+        const OF_SIZE: f64 = 1e-6;
+        let [low, high] = [self.least[index], self.largest[index]];
+        if low > high {
+            return [true; 2];
+        }
+        let margin = OF_RANGE * (high - low).max(OF_SIZE * low.abs().max(high.abs()));
+        [least < low - margin, largest > high + margin]
+    }
+
+    /// The peaks of an output; none where no value is known.
+    fn peaks(&self, index: usize) -> Option<Peaks> {
+        let [from, to] = self.at[index];
+        let least = Peak { t: from, value: self.least[index] };
+        let largest = Peak { t: to, value: self.largest[index] };
+        (least.value <= largest.value).then_some(Peaks { least, largest })
     }
 }
 
@@ -165,7 +189,7 @@ impl<'a> PeakMonitor<'a> {
     pub fn new(model: &'a dyn Machine, settled: Option<f64>) -> Self {
         let outputs = model.description().outputs.len();
         let row = || vec![0.0; outputs];
-        let window = |from: f64| Window { from, found: vec![None; outputs] };
+        let window = |from: f64| Window::new(from, outputs);
         Self {
             model,
             windows: core::iter::once(f64::NEG_INFINITY).chain(settled).map(window).collect(),
@@ -179,16 +203,16 @@ impl<'a> PeakMonitor<'a> {
         }
     }
 
-    /// The peaks of each output over the whole run; none of a run that has made no step.
+    /// The peaks of output `index` over the whole run; none of a run that has made no step.
     #[must_use]
-    pub fn peaks(&self) -> &[Option<Peaks>] {
-        &self.windows[0].found
+    pub fn peaks(&self, index: usize) -> Option<Peaks> {
+        self.windows[0].peaks(index)
     }
 
-    /// The peaks of each output from the instant on that was given; none of a run that has not come there.
+    /// The same from the instant on that was given; none of a run that has not come there.
     #[must_use]
-    pub fn settled(&self) -> &[Option<Peaks>] {
-        self.windows.get(1).map_or(&[], |window| &window.found)
+    pub fn settled(&self, index: usize) -> Option<Peaks> {
+        self.windows.get(1)?.peaks(index)
     }
 
     /// Whether an output may turn in a part of `h` (s) that ends at `t` (s) in `to`, beyond what is known; marks which do.
@@ -198,15 +222,10 @@ impl<'a> PeakMonitor<'a> {
         for (index, marked) in may_turn.iter_mut().enumerate() {
             let [from, to] = [past.values[index], to[index]];
             let bend = past.bend(index, h, to - from);
-            let (least, largest) = (from.min(to) - BEYOND * bend, from.max(to) + BEYOND * bend);
-            let is_beyond = |window: &Window| {
-                let leads = |known: Peaks| {
-                    let margin = known.margin();
-                    least < known.least.value - margin || largest > known.largest.value + margin
-                };
-                t >= window.from && window.found[index].is_none_or(leads)
-            };
-            *marked = (to - from).abs() <= TURN * bend && windows.iter().any(is_beyond);
+            let reach = BEYOND * bend;
+            let ends = [from.min(to) - reach, from.max(to) + reach];
+            let leads = |window: &Window| t >= window.from && window.leads(index, ends) != [false; 2];
+            *marked = (to - from).abs() <= TURN * bend && windows.iter().any(leads);
             any |= *marked;
         }
         any
@@ -258,25 +277,30 @@ impl<'a> PeakMonitor<'a> {
             }
             let part = [low.max(opens), high];
             for index in (0..row.len()).filter(|&index| may_turn[index]) {
-                let Some(known) = windows[place].found[index] else { continue };
                 let course = Course {
                     values: [past.values[index], to[index]],
                     slopes: [slopes[0][index], slopes[1][index]],
                     middle: middle[index],
                     h,
                 };
-                let Some([least, largest]) = course.beyond() else { continue };
-                let margin = known.margin();
-                let signs = [(least < known.least.value - margin, 1.0), (largest > known.largest.value + margin, -1.0)];
-                for sign in signs.into_iter().filter_map(|(leads, sign)| leads.then_some(sign)) {
-                    let mut at = |theta: f64| {
-                        let t = step.state(theta, x);
-                        model.outputs(t, x, step.negative(), row);
-                        take(windows, t, row);
-                        sign * row[index]
-                    };
-                    let [low, high] = if course.is_resolved() { part } else { lowest_piece(part, &mut at) };
-                    minimum(low, high, f64::NEG_INFINITY, at);
+                let Some(beyond) = course.beyond() else { continue };
+                let leads = windows[place].leads(index, beyond);
+                if leads == [false; 2] {
+                    continue;
+                }
+                let mut at = |theta: f64| {
+                    let t = step.state(theta, x);
+                    model.outputs(t, x, step.negative(), row);
+                    take(windows, t, row);
+                    row[index]
+                };
+                if part[0] == low && course.is_cubic(|u| at(low + u * (high - low))) {
+                    continue;
+                }
+                for sign in [1.0, -1.0].into_iter().zip(leads).filter_map(|(sign, leads)| leads.then_some(sign)) {
+                    let mut signed = |theta: f64| sign * at(theta);
+                    let [low, high] = if course.is_resolved() { part } else { lowest_piece(part, &mut signed) };
+                    minimum(low, high, f64::NEG_INFINITY, signed);
                 }
             }
         }
@@ -317,6 +341,17 @@ impl Course {
         self.off() <= RESOLVED * (largest - least)
     }
 
+    /// Whether the cubic is the course: where it turns, the output, `at` that part, is as the cubic has it. Then these are its
+    /// peaks, as a small error of the place moves them by its square only.
+    fn is_cubic(&self, mut at: impl FnMut(f64) -> f64) -> bool {
+        const NEAR: f64 = 1e-6;
+        let turns = self.turns();
+        let [least, largest] = self.range();
+        let is_near =
+            |(part, value): (f64, f64)| (at(part) - value).abs() <= NEAR * (largest.max(value) - least.min(value));
+        self.is_resolved() && turns.iter().any(Option::is_some) && turns.into_iter().flatten().all(is_near)
+    }
+
     /// About the least and the largest value inside; none where the course leads from one end to the other.
     fn beyond(&self) -> Option<[f64; 2]> {
         let [a, b] = self.values;
@@ -326,7 +361,7 @@ impl Course {
         }
         let off = self.off();
         let [mut least, mut largest] = self.range();
-        for value in turns.into_iter().flatten() {
+        for (_, value) in turns.into_iter().flatten() {
             (least, largest) = (least.min(value), largest.max(value));
         }
         // By as much more as the cubic is off, and by a part of what it adds.
@@ -335,8 +370,8 @@ impl Course {
         Some([least - more(added[0]), largest + more(added[1])])
     }
 
-    /// The values of the cubic where its slope is zero inside of the part.
-    fn turns(&self) -> [Option<f64>; 2] {
+    /// Where the slope of the cubic is zero inside of the part, which is from 0 to 1, and its values there.
+    fn turns(&self) -> [Option<(f64, f64)>; 2] {
         let ([a, b], h) = (self.values, self.h);
         let [first, last] = self.slopes.map(|slope| slope * h);
         // a + first u + square u^2 + cube u^3.
@@ -349,7 +384,7 @@ impl Course {
         let q = -(square + libm::copysign(libm::sqrt(discriminant), square));
         [q / (3.0 * cube), first / q].map(|u| {
             let is_inside = u > 0.0 && u < 1.0;
-            is_inside.then_some(a + u * (first + u * (square + u * cube)))
+            is_inside.then_some((u, a + u * (first + u * (square + u * cube))))
         })
     }
 }

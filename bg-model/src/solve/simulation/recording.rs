@@ -175,9 +175,9 @@ impl<'a> Recorder<'a> {
             let count = part.columns(self.model.description()).len();
             let of_part = columns.by_ref().take(count);
             if *part == Part::Outputs {
-                let settled = found.settled().iter().copied().chain(core::iter::repeat(None));
-                let found = found.peaks().iter().copied().zip(settled);
-                of_part.zip(found).for_each(|(column, found)| (column.peaks, column.settled) = found);
+                for (index, column) in of_part.enumerate() {
+                    (column.peaks, column.settled) = (found.peaks(index), found.settled(index));
+                }
             } else {
                 of_part.for_each(drop);
             }

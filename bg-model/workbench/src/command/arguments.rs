@@ -10,11 +10,11 @@ use super::identify::IdentifyArguments;
 use super::methods::integrator;
 use super::sensitivity::SensitivityArguments;
 use super::sweep::SweepArguments;
-use crate::golden::FOLDER;
-use crate::picture::Level;
-use crate::program::T_END;
-use crate::request::Integration;
-use crate::tables::Part;
+use crate::ask::request::Integration;
+use crate::ask::request::T_END;
+use crate::show::picture::Level;
+use crate::show::tables::Part;
+use crate::studies::golden::FOLDER;
 
 #[derive(Debug, Parser)]
 #[command(name = "program", version, args_conflicts_with_subcommands = true)]
@@ -190,6 +190,18 @@ pub struct RunArguments {
     #[arg(long, value_name = "FILE.json")]
     pub from: Option<PathBuf>,
 
+    /// Make the run of a summary.json again, with its scene, parameters, inputs, start and integrator: the same bits. Files
+    /// of inputs are read again and have to be the same
+    #[arg(long, value_name = "summary.json", conflicts_with_all = [
+        "scene", "set", "params", "input", "t_end", "method", "fixed_step", "rtol", "atol", "step", "start", "from"
+    ])]
+    pub again: Option<PathBuf>,
+
+    /// Keep these outputs only, in this order: in the CSV file, the summary, the page and the figures; several with commas.
+    /// A name without components stands for all of them
+    #[arg(long = "output", value_name = "NAME", value_delimiter = ',')]
+    pub outputs: Vec<String>,
+
     /// Write the state at the end here, for --from
     #[arg(long, value_name = "FILE.json")]
     pub save_state: Option<PathBuf>,
@@ -203,7 +215,7 @@ pub struct RunArguments {
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
 
-    /// Draw no figures and no overview page; together with --csv nothing is written but that file
+    /// Draw no figures and no page; together with --csv nothing is written but that file
     #[arg(long)]
     pub no_figures: bool,
 }

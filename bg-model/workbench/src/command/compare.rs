@@ -9,12 +9,12 @@ use bg_model::simulation::Recording;
 use super::arguments::CompareArguments;
 use super::run::{follow, machine, request};
 use super::{InputError, ended, say};
-use crate::Program;
-use crate::compare::text;
-use crate::inputs;
-use crate::parameters::{self, Chosen};
-use crate::running::Outcome;
-use crate::samples::read_file;
+use crate::ask::inputs;
+use crate::ask::parameters::{self, Chosen};
+use crate::program::Program;
+use crate::run::compare::text;
+use crate::run::running::Outcome;
+use crate::run::samples::read_file;
 
 pub fn compare(program: &Program, arguments: &CompareArguments) -> Result<ExitCode, InputError> {
     let graph = program.models.graph().description;

@@ -14,10 +14,10 @@ use thiserror::Error;
 
 use super::arguments::FmuArguments;
 use super::{InputError, say};
-use crate::Program;
+use crate::ask::maker::Prebuilt;
+use crate::ask::parameters::Values;
 use crate::files::whole;
-use crate::maker::Prebuilt;
-use crate::parameters::Values;
+use crate::program::Program;
 
 /// A library that there is none of.
 #[derive(Debug, Error)]

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 use super::arguments::{CheckArguments, RecordArguments};
 use super::run::{chosen, claimed_and_run, machine};
 use super::{InputError, ended};
-use crate::Program;
 use crate::files::console;
-use crate::golden::{Place, check_one, prepare};
-use crate::running::{Begin, Outcome};
+use crate::program::Program;
+use crate::run::running::{Begin, Outcome};
+use crate::studies::golden::{Place, check_one, prepare};
 
 /// A run that stops before its end is not recorded.
 pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode, InputError> {

@@ -11,14 +11,14 @@ use clap::Args;
 use super::run::{chosen, machine, request};
 use super::sensitivity::{SensitivityArguments, adjustable, at, observed};
 use super::{InputError, ended};
-use crate::Program;
+use crate::ask::inputs;
+use crate::ask::scenes::Scene;
 use crate::files::{FileError, RunFolder, console};
-use crate::gradient::{Slope, csv, text};
-use crate::identify::Data;
-use crate::identify::data::{pair, read_file};
-use crate::inputs;
-use crate::output::OutputError;
-use crate::scenes::Scene;
+use crate::program::Program;
+use crate::show::output::OutputError;
+use crate::studies::gradient::{Slope, csv, text};
+use crate::studies::identify::Data;
+use crate::studies::identify::data::{pair, read_file};
 
 const TABLE: &str = "gradient.txt";
 const CSV: &str = "gradient.csv";
@@ -141,7 +141,7 @@ fn only(scene: &Scene, name: &str) -> Result<(usize, &'static OutputInfo), Input
 
 /// The columns, each in parts of its root mean square.
 fn measured(data: &Data) -> Vec<Measured> {
-    let of = |column: &crate::identify::Measured| {
+    let of = |column: &crate::studies::identify::Measured| {
         let values: Vec<(f64, f64)> =
             data.times.iter().zip(&column.values).filter_map(|(&t, value)| Some((t, (*value)?))).collect();
         let square = values.iter().fold(0.0, |sum, (_, value)| sum + value * value) / values.len().max(1) as f64;

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use super::arguments::GraphArguments;
 use super::{InputError, say};
 use crate::files::whole;
-use crate::{Program, picture, tables};
+use crate::program::Program;
+use crate::show::{picture, tables};
 
 pub(super) fn graph(program: &Program, arguments: &GraphArguments) -> Result<ExitCode, InputError> {
     let scene = program.scene_called(&arguments.scene);

@@ -5,6 +5,8 @@
 //! run.
 
 mod arguments;
+mod asked;
+pub mod calls;
 mod compare;
 mod fmu;
 mod golden;
@@ -33,32 +35,33 @@ use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Arg, CommandFactory, FromArgMatches};
 use thiserror::Error;
 
-use crate::Program;
+use crate::ask::inputs::InputSettingError;
+use crate::ask::machine::Absent;
+use crate::ask::parameters::{self, SettingError};
+use crate::ask::request::RequestError;
+use crate::ask::scenes::Fixed;
 use crate::files::{FileError, console};
-use crate::golden::GoldenError;
-use crate::identify::IdentifyError;
-use crate::identify::data::Unusable;
-use crate::inputs::InputSettingError;
-use crate::linear::LinearError;
 use crate::live::ModuleError;
-use crate::machine::Absent;
-use crate::output::OutputError;
-use crate::parameters::{self, SettingError};
-use crate::precision::measure::MeasureError;
-use crate::request::RequestError;
-use crate::running::BeginError;
-use crate::samples::Unreadable;
-use crate::scenes::Fixed;
-use crate::sweep::SweepError;
-use crate::tables;
+use crate::program::Program;
+use crate::run::recipe::AgainError;
+use crate::run::running::BeginError;
+use crate::run::samples::Unreadable;
+use crate::show::output::OutputError;
+use crate::show::tables;
+use crate::studies::golden::GoldenError;
+use crate::studies::identify::IdentifyError;
+use crate::studies::identify::data::Unusable;
+use crate::studies::precision::measure::MeasureError;
+use crate::studies::sweep::SweepError;
 use arguments::{Cli, Command, GoldenCommand};
+use bg_analysis::linear::LinearError;
 use fmu::LibraryError;
-pub(crate) use linearize::space as linearised;
-pub(crate) use sensitivity::derivatives;
 
 /// Input that cannot be used.
 #[derive(Debug, Error)]
 enum InputError {
+    #[error(transparent)]
+    Again(#[from] AgainError),
     #[error(transparent)]
     Setting(#[from] SettingError),
     #[error("{name} {}: must be {range}", parameters::number(*value))]
@@ -123,14 +126,22 @@ impl From<BeginError> for InputError {
     }
 }
 
-impl From<crate::precision::case::CaseError> for InputError {
-    fn from(fault: crate::precision::case::CaseError) -> Self {
+impl From<crate::program::case::CaseError> for InputError {
+    fn from(fault: crate::program::case::CaseError) -> Self {
         Self::Measure(fault.into())
     }
 }
 
+impl Program {
+    /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output
+    /// failed, 2 the input cannot be used.
+    pub fn main(self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+        main(&self, arguments)
+    }
+}
+
 /// Does what the arguments ask for and gives the exit code.
-pub(crate) fn main(program: &Program, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+fn main(program: &Program, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let cli = command(program).try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
     let outcome = match cli {
         Err(fault) if fault.use_stderr() => return refuse(&console::in_one_line(&fault.render().to_string())),

@@ -7,12 +7,12 @@ use bg_model::integrator::Integrator;
 use super::arguments::PrecisionArguments;
 use super::progress::bar;
 use super::{InputError, ended};
-use crate::Program;
 use crate::files::{RunFolder, console};
-use crate::output::OutputError;
-use crate::precision::case::Case;
-use crate::precision::measure::{Entry, Setting, measure};
-use crate::precision::report;
+use crate::program::Program;
+use crate::program::case::Case;
+use crate::show::output::OutputError;
+use crate::studies::precision::measure::{Entry, Setting, measure};
+use crate::studies::precision::report;
 
 pub fn measure_all(program: &Program, arguments: &PrecisionArguments) -> Result<ExitCode, InputError> {
     check(arguments)?;

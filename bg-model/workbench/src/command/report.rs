@@ -7,12 +7,12 @@ use super::InputError;
 use super::arguments::{IntegrationArguments, ReportArguments};
 use super::linearize::{check_time, linearised};
 use super::run::simulate;
-use crate::Program;
+use crate::ask::machine::Machine;
 use crate::live::Module;
-use crate::machine::Machine;
-use crate::output::PageFiles;
-use crate::page::Linearised;
-use crate::page::film::Film;
+use crate::program::Program;
+use crate::show::page::Linearised;
+use crate::show::page::film::Film;
+use crate::show::shown::PageFiles;
 
 /// What a report is to show beside the run.
 pub struct Look {

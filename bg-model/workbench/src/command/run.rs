@@ -3,45 +3,41 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+use bg_model::description::OutputInfo;
 use bg_model::run::{Request, RunError, State, sample_times};
-use bg_model::simulation::{MissingColumn, Part};
+use bg_model::simulation::{Column, MissingColumn, Part, Recording};
 
-use super::arguments::{IntegrationArguments, ModelArguments, RunArguments, Start};
+use super::arguments::{IntegrationArguments, ModelArguments, RunArguments};
+use super::asked::Asked;
 use super::progress::{over_time, ticks};
 use super::report::Look;
+use super::sensitivity::observed;
 use super::{InputError, ended};
-use crate::Program;
+use crate::ask::inputs::{self, Named};
+use crate::ask::machine::{Machine, MachineError};
+use crate::ask::parameters::{self, Chosen};
+use crate::ask::scenes::Scene;
 use crate::files::{console, whole};
-use crate::inputs::{self, Named};
 use crate::live::{Live, Order, changed};
-use crate::machine::{Machine, MachineError};
-use crate::output::{Claimed, OutputError, PageFiles, Places, Table};
-use crate::page::film::Film;
-use crate::page::{Parameter, Views};
-use crate::parameters::{self, Chosen};
-use crate::running::{self, Begin, Outcome};
-use crate::scenes::Scene;
-use crate::shown::Exhibits;
-use crate::summary::Summary;
+use crate::program::Program;
+use crate::run::recipe::Recipe;
+use crate::run::running::{self, Begin, Outcome};
+use crate::run::summary::Summary;
+use crate::show::output::{Claimed, OutputError, Places, Table};
+use crate::show::page::film::Film;
+use crate::show::page::{Parameter, Views};
+use crate::show::shown::{Exhibits, PageFiles};
 
 /// Runs and writes; `look` is what a report is to show beside the run, where one is wanted.
 pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>) -> Result<ExitCode, InputError> {
-    let RunArguments { model, integration, .. } = arguments;
-    let graph = program.models.graph().description;
-    let mut chosen = parameters::merge(graph.parameters, model.params.as_deref(), &model.set)?;
-    let settings = inputs::settings(&model.input, graph.inputs)?;
-    chosen.inputs = inputs::made(&settings);
-    let inputs = inputs::named(&settings, graph.inputs);
-    let begin = match (&arguments.from, arguments.start) {
-        (Some(path), _) => Begin::At(read_state(path)?),
-        (None, Start::Model) => Begin::Model,
-        (None, Start::Equilibrium) => Begin::Equilibrium,
-    };
+    let Asked { scene, chosen, settings, recipe } = Asked::of(program, arguments)?;
+    let Recipe { integration, begin, .. } = &recipe;
+    let inputs = inputs::named(&settings, program.models.graph().description.inputs);
+    let outputs = observed(scene, &arguments.outputs, "--output")?;
     let t0 = begin.time();
     let finest = program.extras.finest(integration.t_end);
-    let request = Request { settled: program.extras.settled(), ..request(integration, t0, Some(finest))? };
+    let request = Request { settled: program.extras.settled(), ..integration.request(t0, Some(finest))? };
     arguments.save_state.iter().try_for_each(|path| whole::probe(path))?;
-    let scene = program.scene_called(&model.scene);
     let figures = (!arguments.no_figures).then(|| program.extras.figures(scene.description)).flatten();
     let page = match look {
         Some(look) => Some(look.files.clone()),
@@ -55,7 +51,7 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
                 scene: scene.name.clone(),
                 parameters: chosen.values.changed().map(|(info, value)| (info.name.to_owned(), value)).collect(),
                 inputs: settings,
-                integration: integration.integration(),
+                integration: integration.clone(),
                 begin: begin.clone(),
             },
         }),
@@ -63,7 +59,10 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     };
     let claim = || Ok(places.claim()?);
     let machine = machine(program, scene, &chosen)?;
-    let (outcome, views, claimed) = claimed_and_run(&*machine, request, &begin, look, claim)?;
+    let (mut outcome, views, claimed) = claimed_and_run(&*machine, request, begin, look, claim)?;
+    if !arguments.outputs.is_empty() {
+        keep(&mut outcome.run.recording, &outputs);
+    }
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
     let rows = sample_times(t0, integration.step, integration.t_end);
@@ -77,7 +76,7 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
         views: &views,
         live: live.as_ref(),
     };
-    let mut faults: Vec<String> = match report(program, scene, outcome, &rows, claimed, inputs, &exhibits) {
+    let mut faults: Vec<String> = match report(program, outcome, &rows, claimed, (inputs, recipe), &exhibits) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
     };
@@ -132,37 +131,38 @@ pub(super) fn claimed_and_run<C>(
     Ok((outcome, views, claimed))
 }
 
-fn read_state(path: &Path) -> Result<State, InputError> {
-    let failed = |fault: String| InputError::From { path: path.to_owned(), fault };
-    let text = std::fs::read_to_string(path).map_err(|fault| failed(format!("cannot be read: {fault}")))?;
-    State::from_json(&text).map_err(|fault| failed(fault.to_string()))
-}
-
 /// Writes the state where the run has come to; gives what failed.
 fn save_state(path: &Path, state: &State) -> Result<(), String> {
     let text = state.to_json().map_err(|fault| fault.to_string())?;
     whole::write(path, |file| file.write_all(text.as_bytes())).map_err(|fault| fault.to_string())
 }
 
+/// Leaves these outputs of a run, in this order.
+fn keep(run: &mut Recording, outputs: &[(usize, &OutputInfo)]) {
+    let mut columns: Vec<Option<Column>> = std::mem::take(&mut run.columns).into_iter().map(Some).collect();
+    run.columns = outputs.iter().filter_map(|(index, _)| columns.get_mut(*index)?.take()).collect();
+}
+
 /// Writes the files and prints the summary; gives what failed.
 fn report(
     program: &Program,
-    scene: &Scene,
     outcome: Outcome,
     rows: &[f64],
     claimed: Claimed,
-    inputs: Vec<Named>,
+    (inputs, recipe): (Vec<Named>, Recipe),
     exhibits: &Exhibits<'_>,
 ) -> Result<Vec<OutputError>, MissingColumn> {
     let Outcome { run, failure } = outcome;
     let extras = &program.extras;
-    let mut summary = Summary::new(&scene.name, &run, failure, extras.additions(&run)?);
+    let mut summary = Summary::new(&recipe.scene, &run, failure, extras.additions(&run)?);
+    summary.program = program.texts.name_and_version();
+    summary.recipe = Some(recipe);
     summary.changed_parameters =
         changed(exhibits.parameters.iter().map(|parameter| (&parameter.info, parameter.value)));
     summary.inputs = inputs;
     let columns = extras.columns(&run);
     let table = Table { samples: &run.at(rows), columns: columns.as_deref() };
-    let texts = extras.page(scene.description);
+    let texts = extras.page(exhibits.description);
     let mut written = claimed.write(&table, &run, &texts, exhibits, &mut summary);
     let page = written.page.as_ref().map_or_else(String::new, |page| format!("; open {page} there"));
     let printed = console::print(&format!("{summary}\nwritten: {written}{page}\n"));

@@ -13,19 +13,19 @@ use super::arguments::{IntegrationArguments, ModelArguments};
 use super::gradient::{self, OneNumber};
 use super::run::{chosen, machine, request};
 use super::{InputError, ended};
-use crate::Program;
-use crate::figures::FigureError;
-use crate::figures::influence::influence;
+use crate::ask::inputs;
+use crate::ask::machine::Machine;
+use crate::ask::parameters::{Chosen, nearest};
+use crate::ask::scenes::Scene;
 use crate::files::{FileError, RunFolder, console};
-use crate::inputs;
-use crate::machine::Machine;
-use crate::output::OutputError;
-use crate::parameters::{Chosen, nearest};
-use crate::scenes::Scene;
-use crate::sensitivity::{
+use crate::program::Program;
+use crate::run::summary::{longest_step, short};
+use crate::show::figures::FigureError;
+use crate::show::output::OutputError;
+use crate::studies::sensitivity::figure::influence;
+use crate::studies::sensitivity::{
     Course, Influence, Measure, Question, courses, courses_csv, csv, influences, text, without_influence,
 };
-use crate::summary::{longest_step, short};
 
 const TABLE: &str = "sensitivity.txt";
 const CSV: &str = "sensitivity.csv";
@@ -83,12 +83,13 @@ pub fn sensitivity(program: &Program, arguments: &SensitivityArguments) -> Resul
     let found = differentiated(&*machine, &with_times(request.clone(), &peaks), &parameters)?;
     let mut measures = Measure::ALL.to_vec();
     measures.extend(at.iter().map(|&t| Measure::At(t)));
-    let question = Question { outputs: &outputs, parameters: &parameters, measures: &measures };
+    let rows = rows(&request);
+    let question = Question { outputs: &outputs, parameters: &parameters, measures: &measures, rows };
     let all = influences(&found, &question);
     let inputs = inputs::text(&named, [0.0, found.trajectory.last.t]);
     let told = format!("{}{inputs}", told(&found, &all, &question, arguments.most));
     let table = format!("{}{inputs}", text(&all, question.parameters.len()));
-    let (written, faults) = write(folder, &scene.name, (&found, &request), (&all, &table), &question);
+    let (written, faults) = write(folder, &scene.name, &found, (&all, &table), &question);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
     let printed = console::print(&format!("{told}\nwritten: {written}\n"));
@@ -188,7 +189,8 @@ pub fn derivatives(
         let outputs = observed(scene, of, "outputs")?;
         let machine = machine(program, scene, chosen)?;
         let found = differentiated(&*machine, &request, &parameters)?;
-        let courses = courses(&found, &Question { outputs: &outputs, parameters: &parameters, measures: &[] });
+        let courses =
+            courses(&found, &Question { outputs: &outputs, parameters: &parameters, measures: &[], rows: &[] });
         Ok((found.trajectory, courses))
     });
     found.map_err(|fault| fault.to_string())
@@ -223,7 +225,7 @@ fn told(found: &Sensitivities, all: &[Influence], question: &Question, most: usi
         format!("\nno influence on these outputs: {}\n", still.join(", "))
     };
     let (t, events) = (found.trajectory.last.t, found.trajectory.statistics.events);
-    let samples = longest_step(&found.trajectory.times).map_or_else(String::new, |step| {
+    let samples = longest_step(question.rows).map_or_else(String::new, |step| {
         format!("mean, rms and course are those of samples at most {} s apart\n", short(step))
     });
     format!(
@@ -238,7 +240,7 @@ fn told(found: &Sensitivities, all: &[Influence], question: &Question, most: usi
 fn write(
     mut folder: RunFolder,
     scene: &str,
-    (found, request): (&Sensitivities, &Request),
+    found: &Sensitivities,
     (all, table): (&[Influence], &str),
     question: &Question,
 ) -> (Option<usize>, Vec<OutputError>) {
@@ -246,7 +248,7 @@ fn write(
     let mut fill = || -> Result<(), FileError> {
         folder.write_text(TABLE, table)?;
         folder.write_text(CSV, &csv(all))?;
-        folder.write_text(COURSES, &courses_csv(&found.trajectory.times, rows(request), &courses(found, question)))?;
+        folder.write_text(COURSES, &courses_csv(&found.trajectory.times, &courses(found, question), question))?;
         match influence(&format!("{scene}: change of each course for a change of the parameter by its size"), all) {
             Ok(svg) => folder.write_text(FIGURE, &svg)?,
             Err(FigureError::Empty) => {}

@@ -7,12 +7,12 @@ use clap::{Args, Subcommand};
 
 use super::progress::bar;
 use super::{InputError, ended, say};
-use crate::Program;
+use crate::ask::parameters::number;
 use crate::files::whole;
-use crate::parameters::number;
-use crate::sweep::folder::{Folder, Kind};
-use crate::sweep::plan::Plan;
-use crate::sweep::{Outcome, Share, SweepError, recipe, shown, sweep};
+use crate::program::Program;
+use crate::studies::sweep::folder::{Folder, Kind};
+use crate::studies::sweep::plan::Plan;
+use crate::studies::sweep::{Outcome, Share, SweepError, recipe, shown, sweep};
 
 #[derive(Debug, Args)]
 #[command(subcommand_negates_reqs = true, args_conflicts_with_subcommands = true)]

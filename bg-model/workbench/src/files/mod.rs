@@ -6,6 +6,8 @@
 
 pub mod console;
 mod folder;
+pub(crate) mod head;
+pub mod table;
 pub mod whole;
 
 use std::io;

@@ -11,55 +11,30 @@
 #[cfg(not(target_arch = "wasm32"))]
 mod module;
 
-use std::collections::BTreeMap;
-
 use bg_model::description::{Description, ParameterInfo};
 use bg_model::input::{Input, TableError};
 use bg_model::parameters::ParameterError;
 use bg_model::run::{RunError, sample_times};
 use bg_model::simulation::{MissingColumn, Part};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use thiserror::Error;
 
-use crate::Program;
-use crate::extras::Extras;
-use crate::inputs::{Named, Setting, named};
-use crate::machine::MachineError;
-use crate::page::film::Film;
-use crate::page::{Balance, Bonds, Data, Parameter, Report, page_beside};
-use crate::parameters::{Values, number};
-use crate::request::{Integration, RequestError};
-use crate::running::{Begin, BeginError, Outcome, follow};
-use crate::scenes::Scene;
-use crate::summary::{Check, Summary};
+use crate::ask::inputs::{Named, Setting, named};
+use crate::ask::machine::MachineError;
+use crate::ask::parameters::{Values, number};
+use crate::ask::request::{Integration, RequestError};
+use crate::ask::scenes::Scene;
+use crate::program::Program;
+use crate::run::running::{BeginError, Outcome, follow};
+use crate::run::summary::{Check, Summary};
+use crate::show::extras::Extras;
+use crate::show::page::film::Film;
+use crate::show::page::{Balance, Bonds, Data, Parameter, Report, page_beside};
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use module::{Module, ModuleError};
 
-/// What a page asks for: a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Order {
-    /// The scene, by its name on the command line.
-    pub scene: String,
-    /// The parameters that are not at their defaults.
-    pub parameters: BTreeMap<String, f64>,
-    /// The inputs in the order of the model's description; those that are missing are 0.
-    pub inputs: Vec<Setting>,
-    /// How it is integrated.
-    pub integration: Integration,
-    /// Where it begins.
-    pub begin: Begin,
-}
-
-/// A report that can run its model again.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Live {
-    /// The program, compiled for WebAssembly for the order's scene.
-    pub module: Vec<u8>,
-    /// The run that the page shows first.
-    pub order: Order,
-}
+pub use crate::show::page::order::{Live, Order};
 
 /// A run that was not made.
 #[derive(Debug, Error)]
@@ -129,10 +104,14 @@ pub fn report(program: &Program, order: &Order) -> Result<String, String> {
     made(program, order).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
 }
 
-/// Registers what answers a page.
 #[cfg(target_arch = "wasm32")]
-pub(crate) fn register(program: Program) {
-    bg_live::register(move |text| answer(&program, text));
+impl Program {
+    /// In WebAssembly there are no arguments: the program answers a page from then on.
+    pub fn main(self, arguments: impl IntoIterator<Item = std::ffi::OsString>) -> std::process::ExitCode {
+        drop(arguments);
+        bg_live::register(move |text| answer(&self, text));
+        std::process::ExitCode::SUCCESS
+    }
 }
 
 fn told(outcome: Result<Shown, Refusal>) -> String {
@@ -145,6 +124,7 @@ fn told(outcome: Result<Shown, Refusal>) -> String {
 
 /// A run that was asked for.
 struct Made<'a> {
+    program: String,
     extras: &'a dyn Extras,
     scene: &'a Scene,
     outcome: Outcome,
@@ -174,6 +154,7 @@ fn made<'a>(program: &'a Program, order: &Order) -> Result<Made<'a>, Refusal> {
     let from = order.begin.state(&*machine)?;
     let mut outcome = follow(&*machine, request, from.as_ref(), |_| ())?;
     Ok(Made {
+        program: program.texts.name_and_version(),
         extras: &*program.extras,
         scene,
         film: Film::taken(scene.description, &mut outcome.run),
@@ -191,6 +172,7 @@ impl Made<'_> {
         let mut summary = Summary::new(&self.scene.name, run, failure.clone(), self.extras.additions(run)?);
         // WebAssembly has no clock, and the same run gives the same bytes.
         summary.wall_time_s = 0.0;
+        summary.program.clone_from(&self.program);
         summary.changed_parameters = changed(self.values.all());
         summary.inputs.clone_from(&self.inputs);
         Ok(summary)

@@ -1,5 +1,6 @@
 //! What a package with models of its own calls: golden outputs, linear models, sweeps in lanes, models of another maker.
 
+mod floors;
 mod golden;
 mod lanes;
 mod linear;

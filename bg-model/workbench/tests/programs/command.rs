@@ -72,6 +72,63 @@ fn ranges_are_those_of_the_solution_and_the_interval_of_samples_is_said_beside_t
 }
 
 #[test]
+fn a_run_is_made_again_from_its_summary() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let read = |file: &str| fs::read_to_string(path.join(file)).unwrap();
+    let recipe = |file: &str| serde_json::from_str::<serde_json::Value>(&read(file)).unwrap()["recipe"].take();
+    let set = ["--set", "length=0.73", "--t-end", "0.4", "--rtol", "1e-7", "--method", "dop853", "--step", "0.03"];
+    text(path, &[&["run", "--out", "o"], &set[..]].concat());
+    let told = text(path, &["run", "--again", "o/summary.json", "--out", "p"]);
+    assert!(told.contains("\nprogram ") && told.contains("length = 0.73 m"), "{told}");
+    assert_eq!(read("o/trajectory.csv"), read("p/trajectory.csv"));
+    let made = recipe("o/summary.json");
+    assert_eq!(made, recipe("p/summary.json"));
+    assert_eq!(made["parameters"]["length"], serde_json::json!({ "value": 0.73, "unit": "m" }));
+    assert_eq!(made["parameters"]["angle"], serde_json::json!({ "value": 0.5, "unit": "rad" }));
+    assert_eq!((&made["version"], &made["integration"]["rtol"]), (&env!("CARGO_PKG_VERSION").into(), &1e-7.into()));
+    // From where a run has come to, with the state in the recipe.
+    text(path, &["run", "--t-end", "0.2", "--no-figures", "--csv", "first.csv", "--save-state", "state.json"]);
+    text(path, &["run", "--from", "state.json", "--t-end", "0.3", "--out", "q"]);
+    fs::remove_file(path.join("state.json")).unwrap();
+    text(path, &["run", "--again", "q/summary.json", "--out", "r"]);
+    assert_eq!(read("q/trajectory.csv"), read("r/trajectory.csv"));
+
+    let refused = |arguments: &[&str]| {
+        let output = run(path, arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let line = refused(&["run", "--again", "o/summary.json", "--set", "length=1"]);
+    assert!(line.contains("cannot be used with"), "{line}");
+    assert!(refused(&["run", "--again", "none.json"]).starts_with("error: --again none.json: cannot be read: "));
+    fs::write(path.join("other.json"), "{}").unwrap();
+    let line = refused(&["run", "--again", "other.json"]);
+    assert_eq!(line, "error: --again other.json: has no `recipe`; give the summary.json of a run\n");
+    let changed = read("o/summary.json").replace(made["model"].as_str().unwrap(), "00000000");
+    fs::write(path.join("changed.json"), changed).unwrap();
+    let line = refused(&["run", "--again", "changed.json"]);
+    assert!(line.contains("the model has other equations or outputs than then"), "{line}");
+}
+
+#[test]
+fn outputs_are_chosen_and_ordered() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let told = text(path, &["run", "--t-end", "0.2", "--output", "force_y,angle", "--out", "o"]);
+    assert!(told.contains("\nforce_y ") && told.contains("\nangle ") && !told.contains("force_x"), "{told}");
+    let csv = fs::read_to_string(path.join("o/trajectory.csv")).unwrap();
+    assert_eq!(csv.lines().next(), Some("t,force_y,angle"));
+    let page = fs::read_to_string(path.join("o/index.html")).unwrap();
+    assert!(page.contains("\"column\":\"angle\"") && !page.contains("\"column\":\"force_x\""));
+    let is_there = |file: &str| path.join("o").join(file).exists();
+    assert_eq!(["angle.svg", "force_y.svg", "force_x.svg"].map(is_there), [true, true, false]);
+    let output = run(path, &["run", "--output", "forse_y"]);
+    let line = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.code() == Some(2) && line.contains("did you mean `force_y`?"), "{line}");
+}
+
+#[test]
 fn a_run_goes_on_from_a_saved_state() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

@@ -81,6 +81,22 @@ fn every_result_of_a_run_names_its_inputs() {
 }
 
 #[test]
+fn a_run_is_made_again_with_the_same_table_only() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("load.csv"), "t,force\n0,40\n0.5,10\n1,20\n").unwrap();
+    text(path, &["run", "--t-end", "1", "--out", "o", "--input", "force=cubic:load.csv:force"]);
+    text(path, &["run", "--again", "o/summary.json", "--out", "p"]);
+    let csv = |folder: &str| fs::read_to_string(path.join(folder).join("trajectory.csv")).unwrap();
+    assert_eq!(csv("o"), csv("p"));
+    fs::write(path.join("load.csv"), "t,force\n0,41\n0.5,10\n1,20\n").unwrap();
+    let output = run(path, &["run", "--again", "o/summary.json", "--out", "q"]);
+    let line = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(line.contains("the file of the input `force` has other bytes than then"), "{line}");
+}
+
+#[test]
 fn an_input_that_was_not_given_is_said_to_be_0() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

@@ -227,6 +227,7 @@ fn bad_plans_are_one_line_each() {
         "[sobol]\ncount = 100000\nseed = 1\nranges = { angle = { from = 0, to = 1 } }\n",
         "list = 'absent.csv'\n",
         "list = 'bad.csv'\n",
+        "list = 'bare.csv'\n",
         "[set]\nmass = 1\n[grid]\nlength = [1]\n",
         "[set]\nlength = 2\n[grid]\nlength = [1]\n",
         "[inputs]\nforce = 3\n[grid]\nlength = [1]\n",
@@ -243,6 +244,7 @@ fn bad_plans_are_one_line_each() {
     for plan in plans {
         let folder = with_plan(plan);
         fs::write(folder.path().join("bad.csv"), "length\none\n").unwrap();
+        fs::write(folder.path().join("bare.csv"), "0.5\n0.6\n").unwrap();
         let line = refused(folder.path(), &["sweep", "--plan", "plan.toml"]);
         assert!(!folder.path().join("out").exists());
         lines += &format!("{plan}{line}\n");

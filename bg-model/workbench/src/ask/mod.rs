@@ -1,0 +1,11 @@
+//! What is asked: values of parameters and inputs, how a run is integrated, which models there are and what each can be
+//! asked.
+
+pub mod compiled;
+pub mod inputs;
+pub mod machine;
+pub mod maker;
+pub mod parameters;
+pub mod reference;
+pub mod request;
+pub mod scenes;

@@ -1,0 +1,173 @@
+//! What a program does for another program: runs and linear models as values, without files and terminal.
+//!
+//! In: parameters, inputs and settings by name. Out: what the commands `run`, `linearize` and `sensitivity` make, or
+//! the sentence that they would refuse it with.
+
+use std::collections::BTreeMap;
+
+use bg_model::description::ParameterInfo;
+use bg_model::run::Trajectory;
+use thiserror::Error;
+
+use super::linearize::space as linearised;
+use super::sensitivity::derivatives;
+use crate::ask::inputs::{self, Named};
+use crate::ask::parameters::{self, Chosen, number};
+use crate::ask::request::Integration;
+use crate::ask::scenes::Scene;
+use crate::program::Program;
+use crate::run::running::{Begin, follow};
+use crate::studies::sensitivity::Course;
+use bg_analysis::linear::StateSpace;
+
+/// What cannot be done, in a sentence.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[error("{0}")]
+pub struct Refused(String);
+
+/// Where a run begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Started {
+    /// At the model's own start.
+    #[default]
+    Model,
+    /// At the equilibrium near it.
+    Equilibrium,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Asked {
+    /// The scene; else that of the program.
+    pub scene: Option<String>,
+    /// Parameters that are not at their defaults.
+    pub set: BTreeMap<String, f64>,
+    /// Inputs as `NAME=VALUE` or `NAME=FILE.csv`.
+    pub inputs: Vec<String>,
+    /// How it is integrated.
+    pub integration: Integration,
+    /// Where it begins.
+    pub start: Started,
+}
+
+/// A run that was made.
+#[derive(Debug)]
+pub struct Ran {
+    /// The run, to its end or as far as it went.
+    pub run: Trajectory,
+    /// Why it stopped before its end, if it did.
+    pub failure: Option<String>,
+    /// The model's inputs in their order: what each was set to.
+    pub inputs: Vec<Named>,
+}
+
+fn refused(fault: impl std::fmt::Display) -> Refused {
+    Refused(fault.to_string())
+}
+
+/// The program's version, and what its mechanism is.
+#[must_use]
+pub fn about(program: &Program) -> [String; 2] {
+    [program.texts.version.clone(), program.texts.about.clone()]
+}
+
+/// The scenes with what they are.
+#[must_use]
+pub fn scenes(program: &Program) -> Vec<(String, String)> {
+    program.models.scenes.iter().map(|scene| (scene.name.clone(), scene.summary())).collect()
+}
+
+/// The parameters of a scene, or without one of all.
+///
+/// # Errors
+/// No such scene.
+pub fn parameters(program: &Program, scene: Option<&str>) -> Result<Vec<ParameterInfo>, Refused> {
+    let table = program.models.graph().description.parameters;
+    match scene {
+        None => Ok(table.to_vec()),
+        Some(_) => {
+            let scene = program.find_scene(scene).map_err(Refused)?;
+            Ok(table.iter().filter(|info| scene.adjusts(info.name)).cloned().collect())
+        }
+    }
+}
+
+/// The outputs of a scene with their units.
+///
+/// # Errors
+/// No such scene.
+pub fn outputs(program: &Program, scene: Option<&str>) -> Result<Vec<(String, String)>, Refused> {
+    let scene = program.find_scene(scene).map_err(Refused)?;
+    Ok(scene.description.outputs.iter().map(|output| (output.name.to_owned(), output.unit.to_owned())).collect())
+}
+
+/// Makes the run, as far as it goes.
+///
+/// # Errors
+/// It cannot be made.
+pub fn run(program: &Program, asked: &Asked) -> Result<Ran, Refused> {
+    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let Given { scene, chosen, inputs } = given(program, asked)?;
+    let begin = match asked.start {
+        Started::Model => Begin::Model,
+        Started::Equilibrium => Begin::Equilibrium,
+    };
+    let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
+    let from = begin.state(&*machine).map_err(refused)?;
+    let outcome = follow(&*machine, request, from.as_ref(), |_| ()).map_err(refused)?;
+    Ok(Ran { run: outcome.run, failure: outcome.failure, inputs })
+}
+
+/// The linear model where the run is at `at`, s, or at the equilibrium near the start.
+///
+/// # Errors
+/// There is none.
+pub fn linearize(program: &Program, asked: &Asked, at: Option<f64>) -> Result<StateSpace, Refused> {
+    let Given { scene, chosen, .. } = given(program, asked)?;
+    linearised(program, scene, &chosen, at).map_err(Refused)
+}
+
+/// A run to its end, with the derivatives of the outputs `of` by the parameters `by` over it; without names of all
+/// outputs, or by all that the scene leaves adjustable. It begins at the model's own start.
+///
+/// # Errors
+/// It cannot be made, or has no derivatives.
+pub fn sensitivity(
+    program: &Program,
+    asked: &Asked,
+    by: &[String],
+    of: &[String],
+) -> Result<(Ran, Vec<Course>), Refused> {
+    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let Given { scene, chosen, inputs } = given(program, asked)?;
+    let (run, courses) = derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)?;
+    Ok((Ran { run, failure: None, inputs }, courses))
+}
+
+/// What is written in JSON, as TOML.
+///
+/// # Errors
+/// It is no JSON, or has what TOML has not.
+pub fn toml_of_json(text: &str) -> Result<String, Refused> {
+    let value: serde_json::Value = serde_json::from_str(text).map_err(refused)?;
+    toml::to_string(&value).map_err(refused)
+}
+
+/// What a run is made of.
+struct Given<'a> {
+    scene: &'a Scene,
+    chosen: Chosen,
+    inputs: Vec<Named>,
+}
+
+fn given<'a>(program: &'a Program, asked: &Asked) -> Result<Given<'a>, Refused> {
+    let scene = program.find_scene(asked.scene.as_deref()).map_err(Refused)?;
+    let graph = program.models.graph().description;
+    let mut chosen = Chosen::new(graph.parameters);
+    for (name, &value) in &asked.set {
+        parameters::set(&mut chosen, &format!("{name}={}", number(value)), name, value).map_err(refused)?;
+    }
+    let (values, inputs) = inputs::chosen_and_named(&asked.inputs, graph.inputs).map_err(refused)?;
+    chosen.inputs = values;
+    Ok(Given { scene, chosen, inputs })
+}

@@ -1,0 +1,143 @@
+//! A program made of the models of a graph: its name, its defaults, what it adds to the workbench.
+
+pub mod case;
+
+use bg_model::mechanism::Scenes;
+
+use crate::ask::compiled::Compiled;
+use crate::ask::maker::Maker;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::ask::scenes::Scene;
+use crate::ask::scenes::{Models, in_small_letters};
+use crate::show::extras::{Extras, Plain};
+use case::{Case, CaseSolution};
+
+impl Texts {
+    /// The name with the version.
+    pub fn name_and_version(&self) -> String {
+        format!("{} {}", self.name, self.version)
+    }
+}
+
+/// A program of the models of a graph.
+pub struct Program {
+    pub(crate) texts: Texts,
+    pub(crate) scene: String,
+    pub(crate) models: Models,
+    pub(crate) cases: Vec<Case>,
+    /// The names of the cases that are measured unless others are asked for; of the scene that is run where there are
+    /// none.
+    pub(crate) measured: Vec<String>,
+    pub(crate) extras: Box<dyn Extras>,
+}
+
+/// What a program says of itself.
+#[derive(Clone, Debug)]
+pub(crate) struct Texts {
+    pub name: String,
+    pub version: String,
+    pub about: String,
+    /// The file that has the models, which comes after each command; none of a compiled program.
+    pub file: Option<String>,
+}
+
+impl Program {
+    /// The program of any mechanism that `bond_graph!` made, with what [`Compiled`] has unless more is asked for.
+    #[must_use]
+    pub fn of<Me: Scenes>() -> Self {
+        Self::with(Compiled::<Me>::new())
+    }
+
+    /// The program of the models of `maker`: it runs the graph as it stands, or where it has scenes only, the first
+    /// one. Its command `precision` has a case for each scene and measures the scene that is run, against solutions
+    /// that it computes.
+    #[must_use]
+    pub fn with(maker: impl Maker + 'static) -> Self {
+        let models = Models::of(maker);
+        let own = models.graph();
+        let texts = Texts {
+            name: in_small_letters(own.description.name),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            about: own.description.doc.split_whitespace().collect::<Vec<_>>().join(" "),
+            file: None,
+        };
+        Self {
+            texts,
+            scene: own.name.clone(),
+            cases: Case::of_scenes(&models.scenes, 1.0, CaseSolution::Computed),
+            models,
+            measured: Vec::new(),
+            extras: Box::new(Plain),
+        }
+    }
+
+    /// These cases of `precision`, and the names of those that it measures unless others are asked for.
+    #[must_use]
+    pub fn with_cases(mut self, cases: Vec<Case>, measured: &[&str]) -> Self {
+        self.cases = cases;
+        self.measured = measured.iter().map(|&name| name.to_owned()).collect();
+        self
+    }
+
+    /// Its models.
+    #[must_use]
+    pub const fn models(&self) -> &Models {
+        &self.models
+    }
+
+    /// What `--help` says first; else the documentation of the graph.
+    #[must_use]
+    pub fn about(mut self, about: &str) -> Self {
+        about.clone_into(&mut self.texts.about);
+        self
+    }
+
+    /// It is called `name`, and its models are those of `file`, which comes after each command: `NAME run FILE`.
+    #[must_use]
+    pub fn on_file(mut self, name: &str, file: &str) -> Self {
+        name.clone_into(&mut self.texts.name);
+        self.texts.file = Some(file.to_owned());
+        self
+    }
+
+    /// What `--version` says: `env!("CARGO_PKG_VERSION")` of the program.
+    #[must_use]
+    pub fn version(mut self, version: &str) -> Self {
+        version.clone_into(&mut self.texts.version);
+        self
+    }
+
+    /// The scene that is run unless another is asked for, by its name on the command line.
+    ///
+    /// # Panics
+    /// There is no such scene.
+    #[must_use]
+    pub fn scene(mut self, name: &str) -> Self {
+        assert!(self.models.named(name).is_some(), "there is no scene `{name}`");
+        name.clone_into(&mut self.scene);
+        self
+    }
+
+    /// What the program adds.
+    #[must_use]
+    pub fn extras(mut self, extras: impl Extras + 'static) -> Self {
+        self.extras = Box::new(extras);
+        self
+    }
+
+    /// The scene called `name`, or without a name that of the program; else a sentence.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn find_scene(&self, name: Option<&str>) -> Result<&Scene, String> {
+        let name = name.unwrap_or(&self.scene);
+        self.models.named(name).ok_or_else(|| {
+            let known: Vec<&str> = self.models.scenes.iter().map(|scene| scene.name.as_str()).collect();
+            format!("there is no scene `{name}`; there are {}", known.join(", "))
+        })
+    }
+
+    /// The scene called `name`.
+    #[cfg(not(target_arch = "wasm32"))]
+    pub(crate) fn scene_called(&self, name: &str) -> &Scene {
+        self.models.named(name).expect("the command line takes the names of scenes only")
+    }
+}

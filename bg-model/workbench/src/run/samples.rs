@@ -1,0 +1,100 @@
+//! Samples read back from a CSV file.
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use bg_model::simulation::{Column, Recording};
+use thiserror::Error;
+
+use crate::files::head::is_row;
+
+/// A CSV file that is no run.
+#[derive(Debug, Error)]
+pub enum SamplesError {
+    /// A field is not a number.
+    #[error("`{field}` in line {line} is not a number")]
+    NotANumber {
+        /// The field's text.
+        field: String,
+        /// Its line, counted from 1, the header included.
+        line: usize,
+    },
+    /// The first column is not the time.
+    #[error("the first column must be `t`")]
+    NoTime,
+    /// The first line is a row already.
+    #[error("its first line has numbers; write a first line with `t` and the names of the columns")]
+    NoHead,
+    /// It cannot be read, or is no table.
+    #[error(transparent)]
+    Csv(#[from] csv::Error),
+}
+
+/// A file that is no run, with its name.
+#[derive(Debug, Error)]
+#[error("cannot read {}: {source}", path.display())]
+pub struct Unreadable {
+    /// The file.
+    pub path: PathBuf,
+    /// Why.
+    pub source: SamplesError,
+}
+
+/// Reads a CSV file whose first column is `t`. Units are left empty.
+///
+/// # Errors
+/// A file that is no CSV, has no `t`, or a field that is no number.
+pub fn read(reader: impl Read) -> Result<Recording, SamplesError> {
+    let mut csv = csv::Reader::from_reader(reader);
+    let header = csv.headers()?.clone();
+    if is_row(&header) {
+        return Err(SamplesError::NoHead);
+    }
+    if header.get(0) != Some("t") {
+        return Err(SamplesError::NoTime);
+    }
+    let mut samples = Recording::new(header.iter().skip(1).map(|name| Column::new(name, "")).collect());
+    for (index, record) in csv.records().enumerate() {
+        let number = |field: &str| {
+            // Line 1 is the header, so record 0 stands in line 2.
+            field.parse::<f64>().map_err(|_| SamplesError::NotANumber { field: field.to_owned(), line: index + 2 })
+        };
+        let values = record?.iter().map(number).collect::<Result<Vec<_>, _>>()?;
+        samples.push(values[0], values[1..].iter().copied());
+    }
+    Ok(samples)
+}
+
+/// Reads the CSV file at `path`, as [`read`] does.
+///
+/// # Errors
+/// [`Unreadable`].
+pub fn read_file(path: &Path) -> Result<Recording, Unreadable> {
+    let unreadable = |source| Unreadable { path: path.to_owned(), source };
+    let file = std::fs::File::open(path).map_err(|fault| unreadable(csv::Error::from(fault).into()))?;
+    read(file).map_err(unreadable)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_written_table_reads_back_bit_for_bit() {
+        let mut samples = Recording::new(vec![Column::new("a", ""), Column::new("b", "")]);
+        samples.push(0.0, [1.0 / 3.0, -0.0]);
+        samples.push(0.1 + 0.2, [1e-300, f64::INFINITY]);
+        let mut bytes = Vec::new();
+        samples.write_csv(&mut bytes).unwrap();
+        assert_eq!(read(&bytes[..]).unwrap(), samples);
+        assert!(String::from_utf8(bytes).unwrap().starts_with("t,a,b\n0.0,0.3333333333333333,-0.0\n"));
+    }
+
+    #[test]
+    fn what_is_no_run_is_said() {
+        let fault = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
+        assert_eq!(fault("x,y\n1,2\n"), "the first column must be `t`");
+        assert!(fault("0,1\n1,2\n").starts_with("its first line has numbers; write a first line with `t`"));
+        assert_eq!(fault("t,y\n1,two\n"), "`two` in line 2 is not a number");
+    }
+}

@@ -1,0 +1,13 @@
+//! What a run and its model look like: figures, the picture of the graph, tables, a page, and the files of all that.
+
+pub mod extras;
+pub mod figures;
+pub mod markup;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod output;
+pub mod page;
+pub mod picture;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod shown;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod tables;

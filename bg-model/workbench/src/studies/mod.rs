@@ -1,0 +1,13 @@
+//! More than one run: sweeps, derivatives, fits, recorded runs made again, errors and what they cost.
+
+#[cfg(not(target_arch = "wasm32"))]
+pub mod golden;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod gradient;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod identify;
+pub mod precision;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod sensitivity;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod sweep;
