@@ -84,12 +84,13 @@ impl Window {
         if t < self.from {
             return;
         }
-        for (index, &value) in values.iter().enumerate() {
-            if value < self.least[index] && value.is_finite() {
-                (self.least[index], self.at[index][0]) = (value, t);
+        let known = self.least.iter_mut().zip(&mut self.largest).zip(&mut self.at);
+        for (&value, ((least, largest), at)) in values.iter().zip(known) {
+            if value < *least && value.is_finite() {
+                (*least, at[0]) = (value, t);
             }
-            if value > self.largest[index] && value.is_finite() {
-                (self.largest[index], self.at[index][1]) = (value, t);
+            if value > *largest && value.is_finite() {
+                (*largest, at[1]) = (value, t);
             }
         }
     }
@@ -157,13 +158,11 @@ impl Past {
         self.known = 2;
     }
 
-    /// By how much output `index` bends in a part of `h` (s) that changes it by `change`: its change less that which the
-    /// part before would have led to.
-    fn bend(&self, index: usize, h: f64, change: f64) -> f64 {
-        if self.known < 2 {
-            return change.abs();
-        }
-        (change - (self.values[index] - self.before[index]) * (h / self.h)).abs()
+    /// By how much an output bends in a part of `h` (s) that changes it by `change`: that less what it would change by as in
+    /// the part before, where it changed by `earlier`.
+    fn bend(&self, earlier: f64, h: f64, change: f64) -> f64 {
+        let expected = if self.known < 2 { 0.0 } else { earlier * (h / self.h) };
+        (change - expected).abs()
     }
 }
 
@@ -219,13 +218,16 @@ impl<'a> PeakMonitor<'a> {
     fn may_turn(&mut self, t: f64, h: f64) -> bool {
         let Self { windows, past, to, may_turn, .. } = self;
         let mut any = false;
-        for (index, marked) in may_turn.iter_mut().enumerate() {
-            let [from, to] = [past.values[index], to[index]];
-            let bend = past.bend(index, h, to - from);
-            let reach = BEYOND * bend;
-            let ends = [from.min(to) - reach, from.max(to) + reach];
-            let leads = |window: &Window| t >= window.from && window.leads(index, ends) != [false; 2];
-            *marked = (to - from).abs() <= TURN * bend && windows.iter().any(leads);
+        let ends = past.values.iter().zip(&past.before).zip(to.iter());
+        for (index, (marked, ((&from, &before), &to))) in may_turn.iter_mut().zip(ends).enumerate() {
+            let change = to - from;
+            let bend = past.bend(from - before, h, change);
+            *marked = change.abs() <= TURN * bend && {
+                let reach = BEYOND * bend;
+                let ends = [from.min(to) - reach, from.max(to) + reach];
+                let leads = |window: &Window| t >= window.from && window.leads(index, ends) != [false; 2];
+                windows.iter().any(leads)
+            };
             any |= *marked;
         }
         any
