@@ -145,7 +145,7 @@ impl<'n> Reader<'n> {
         let is_limited = least.is_finite() || most.is_finite();
         joint.limits = (least < most && is_limited).then_some((least, most));
         if least >= most {
-            self.notes.push(format!("The limits of joint `{}` leave it no room: it has none here.", joint.name));
+            self.notes.push(format!("The limits of joint `{}` leave it no room: here it has no limits.", joint.name));
         }
         Ok(())
     }

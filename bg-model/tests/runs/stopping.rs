@@ -113,6 +113,29 @@ fn what_is_zero_at_the_start_does_not_stop_the_run_there() {
     assert!(finish.ended == Ended::ByCondition && (finish.t - 3.0).abs() < 1e-13, "{finish:?}");
 }
 
+/// When a body at 9.81 m/s^2, at the floor or a rounding beside it, is at the floor; none before the end, 1 s.
+fn at_the_floor(x: f64, v: f64) -> Option<f64> {
+    let fall: Rate<2, 0> = |_, x, _| [x[1], -9.81];
+    let floor = |_: f64, x: &SVector<f64, 2>, _: &[bool; 0]| x[0];
+    let (finish, _) = until(&smooth(fall), Dop853::new(), [x, v], 1.0, &settings(1e-9), floor);
+    let finish = finish.unwrap();
+    (finish.ended == Ended::ByCondition).then_some(finish.t)
+}
+
+/// The rows of the table of events at the start in `docs/integrators.md`.
+#[test]
+fn a_condition_at_zero_or_one_rounding_beside_it_at_the_start() {
+    // Up and down again with 1 m/s.
+    let lands = 2.0 / 9.81;
+    let is_near = |t: Option<f64>, expected: f64| t.is_some_and(|t| (t - expected).abs() < 1e-9);
+    assert_eq!((at_the_floor(0.0, 0.0), at_the_floor(-1e-16, 0.0)), (None, None));
+    assert!(is_near(at_the_floor(1e-16, 0.0), libm::sqrt(2e-16 / 9.81)));
+    assert!(is_near(at_the_floor(0.0, 1.0), lands));
+    assert!(is_near(at_the_floor(1e-16, 1.0), lands));
+    let from_below = at_the_floor(-1e-16, 1.0);
+    assert!(from_below.is_some_and(|t| t > 0.0 && t < 2e-16), "{from_below:?}");
+}
+
 #[test]
 fn a_run_goes_on_from_where_the_same_condition_stopped_it() {
     let condition = |_: f64, x: &SVector<f64, 2>, _: &[bool; 0]| x[0] - 0.5;
