@@ -269,16 +269,23 @@ impl Misfit<'_> {
         DVector::from_vec(residuals)
     }
 
-    /// Their derivatives by the variables.
-    fn slopes(&self, values: &[f64], found: &Sensitivities) -> DMatrix<f64> {
+    /// Their derivatives by the variables, all finite: of a variable with one that is not, no step would be known.
+    fn slopes(&self, values: &[f64], found: &Sensitivities) -> Result<DMatrix<f64>, SensitivityError> {
         let mut slopes = Vec::with_capacity(self.data.count() * values.len());
         for (column, noise) in self.data.columns.iter().zip(&self.noise) {
             for k in (0..column.values.len()).filter(|&k| column.values[k].is_some()) {
-                let slope = |l: usize| found.of(l, column.output)[k] * self.variables[l].slope(values[l]) / noise;
-                slopes.extend((0..values.len()).map(slope));
+                for (l, (variable, &value)) in self.variables.iter().zip(values).enumerate() {
+                    let slope = found.of(l, column.output)[k];
+                    if !slope.is_finite() {
+                        let output = self.runs.model.description().outputs[column.output].name;
+                        let (by, t) = (variable.info.name, self.data.times[k]);
+                        return Err(SensitivityError::NoDerivative { output, by, t });
+                    }
+                    slopes.push(slope * variable.slope(value) / noise);
+                }
             }
         }
-        DMatrix::from_row_slice(self.data.count(), values.len(), &slopes)
+        Ok(DMatrix::from_row_slice(self.data.count(), values.len(), &slopes))
     }
 
     fn tell(&mut self, values: &[f64], residuals: &DVector<f64>) {
@@ -304,7 +311,7 @@ impl Problem for Misfit<'_> {
             self.derivatives += 1;
         }
         let (_, found) = self.latest.as_ref().expect("it was just made");
-        let (residuals, slopes) = (self.left(&found.trajectory.columns), self.slopes(&values, found));
+        let (residuals, slopes) = (self.left(&found.trajectory.columns), self.slopes(&values, found)?);
         if is_start {
             self.tell(&values, &residuals);
         }
@@ -435,12 +442,45 @@ fn student(freedom: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::student;
+    use super::*;
+    use bg_model::bond_graph;
+    use bg_model::mechanism::Mechanism;
 
     #[test]
     fn quantiles_are_those_of_the_tables() {
         for (freedom, quantile) in [(5.0, 2.5706), (10.0, 2.2281), (30.0, 2.0423), (1e9, 1.95996)] {
             assert!((student(freedom) - quantile).abs() < 1e-3, "{freedom}: {}", student(freedom));
         }
+    }
+
+    bond_graph! {
+        /// A tank that fills, and the root of what is in it.
+        graph Tank {
+            param rate: m^3/s = 2e-3; param whole: m^3 = 1; param stiffness: Pa/m^3 = 1e4;
+            0 tank: hydraulic; Sf pump = rate; C water = stiffness start 0;
+            pump -> tank; tank -> water;
+            observe { root: 1 = sqrt(water.q / whole) }
+        }
+    }
+
+    /// The rate that is found from roots at these times, of a true one of 3e-3 m^3/s.
+    fn found(times: &[f64]) -> Result<f64, IdentifyError> {
+        let model = Tank::new(TankParameters::default()).expect("in range");
+        let values = times.iter().map(|t| Some((3e-3 * t).sqrt())).collect();
+        let column = Measured { name: "root".to_owned(), output: 0, values };
+        let data = Data { times: times.to_vec(), columns: vec![column], ignored: Vec::new() };
+        let info = &Tank::describe().parameters[0];
+        let rate = Variable { info, start: 2e-3, lower: 0.0, upper: f64::INFINITY };
+        let found = identify(&model, &Request::default(), &data, &[rate], &mut |_, _| {})?;
+        Ok(found.estimates[0].value)
+    }
+
+    #[test]
+    fn a_value_without_a_derivative_is_refused_and_no_start_is_found() {
+        let times = [0.25, 0.5, 0.75, 1.0];
+        let rate = found(&times).expect("derivatives");
+        assert!((rate - 3e-3).abs() < 1e-9, "{rate}");
+        let fault = found(&[&[0.0], &times[..]].concat()).expect_err("a root at zero").to_string();
+        assert!(fault.contains("`root` has no derivative by `rate` at t = 0.0 s"), "{fault}");
     }
 }

@@ -166,6 +166,16 @@ pub enum SensitivityError {
         /// The end of the run, s.
         t_end: f64,
     },
+    /// An output has no derivative where one is asked for, as a root at zero.
+    #[error("`{output}` has no derivative by `{by}` at t = {t:?} s, where it was measured; leave this value out")]
+    NoDerivative {
+        /// The output.
+        output: &'static str,
+        /// The parameter.
+        by: &'static str,
+        /// Time, s.
+        t: f64,
+    },
     /// There is no reverse sweep of the model.
     #[error(
         "there is no reverse sweep of `{model}`, whose rate has more than 400 operations; ask for its derivatives along each direction"
