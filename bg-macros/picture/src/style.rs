@@ -21,32 +21,33 @@ const COLOURS: [(&str, &str, &str); 12] = [
     ("hover", "#c8401a", "#ff9a5a"),
 ];
 
-/// The letters of the whole picture, for its root.
-pub(crate) const LETTERS: &str = "font-family=\"sans-serif\" text-anchor=\"middle\"";
+/// The colours of lines; all others but that of what the pointer is on fill.
+const LINES: [&str; 2] = ["bond", "line"];
 
 /// What is no picture without variables: its size in a page, letters of the system, what the pointer is on.
 const IN_PAGES: &str = "\
-.bond-graph{max-width:100%;height:auto}\
+.bond-graph{max-width:100%;height:auto;fill:var(--faint)}\
+.bond-graph .arrow{stroke-linecap:round}.bond-graph .hit{stroke-width:9px;pointer-events:stroke}\
 .bond-graph text{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,\"DejaVu Sans\",sans-serif}";
 
 const HOVER: &str = "\
 .bond-graph .bond:hover .line,.bond-graph .bond:hover .arrow,.bond-graph .bond:hover .stroke,\
 .bond-graph .node:hover .box,.bond-graph .part:hover .box{stroke:var(--hover)}";
 
-/// A text: its colour, its size in pixels, whether it is bold.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Letters {
-    pub colour: &'static str,
-    pub size: i32,
-    pub is_bold: bool,
+/// What the parts of the picture have unless they say otherwise: letters as of a name.
+pub(crate) fn root() -> String {
+    format!(
+        "font-family=\"sans-serif\" text-anchor=\"middle\" font-size=\"10\" {} stroke-linejoin=\"round\"",
+        fill("faint")
+    )
 }
 
-impl Letters {
-    /// The attributes.
-    pub fn attributes(self) -> String {
-        let weight = if self.is_bold { " font-weight=\"bold\"" } else { "" };
-        format!("{} font-size=\"{}\"{weight}", fill(self.colour), self.size)
-    }
+/// The attributes of a text that is no name as at the [`root`]: a colour, a size in pixels, whether it is bold. Each after
+/// a blank.
+pub(crate) fn letters(colour: &str, size: Option<i32>, is_bold: bool) -> String {
+    let colour = if colour.is_empty() { String::new() } else { format!(" {}", fill(colour)) };
+    let size = size.map_or_else(String::new, |size| format!(" font-size=\"{size}\""));
+    format!("{colour}{size}{}", if is_bold { " font-weight=\"bold\"" } else { "" })
 }
 
 /// The attribute that fills something with a colour.
@@ -69,16 +70,16 @@ pub(crate) fn style() -> String {
         COLOURS.iter().map(|colour| format!("--{0}:var(--bond-graph-{0},{1});", colour.0, of(colour))).collect()
     };
     let (light, dark) = (variables(|colour| colour.1), variables(|colour| colour.2));
-    let painted = |property: &str| -> String {
+    let painted = |property: &str, is_of: fn(&str) -> bool| -> String {
         let rule = |(name, light, _): &(&str, &str, &str)| {
             format!(".bond-graph [{property}=\"{light}\"]{{{property}:var(--{name})}}")
         };
-        COLOURS.iter().map(rule).collect()
+        COLOURS.iter().filter(|(name, ..)| is_of(name)).map(rule).collect()
     };
+    let of_fills = painted("fill", |name| name != "hover" && !LINES.contains(&name));
+    let of_strokes = painted("stroke", |name| LINES.contains(&name));
     format!(
-        "@supports (fill:var(--ink)){{{IN_PAGES}.bond-graph{{{light}}}{}{}{HOVER}}}\
-         @media (prefers-color-scheme:dark){{.bond-graph{{{dark}}}}}",
-        painted("fill"),
-        painted("stroke")
+        "@supports (fill:var(--ink)){{{IN_PAGES}.bond-graph{{{light}}}{of_fills}{of_strokes}{HOVER}}}\
+         @media (prefers-color-scheme:dark){{.bond-graph{{{dark}}}}}"
     )
 }

@@ -14,7 +14,7 @@ use crate::marks::Mark;
 use crate::route::Rect;
 use crate::sheet::{Block, Link, Of, Sheet};
 use crate::shelves::Point;
-use crate::style::{LETTERS, Letters, fill, stroke, style};
+use crate::style::{fill, letters, root, stroke, style};
 use crate::text::{self, xml};
 
 /// Pixels between a block's border and its box.
@@ -34,8 +34,9 @@ pub fn svg(graph: &Graph, level: Level) -> String {
     let name = xml(&graph.name);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"bond-graph\" width=\"{width}\" height=\"{height}\" \
-         viewBox=\"0 0 {width} {height}\" {LETTERS} role=\"img\" aria-label=\"Bond graph of {name}\">\n\
+         viewBox=\"0 0 {width} {height}\" {} role=\"img\" aria-label=\"Bond graph of {name}\">\n\
          <style>{}</style>\n<rect class=\"paper\" width=\"{width}\" height=\"{height}\" {}/>\n",
+        root(),
         style(),
         fill("paper")
     );
@@ -72,10 +73,10 @@ fn draw_frame(out: &mut String, graph: &Graph, frame: &Frame) {
     );
     let title = frame.title(graph);
     let (x, y) = (title.left * PITCH, title.top * PITCH + PITCH);
-    let letters = Letters { colour: "ink", size: 12, is_bold: true }.attributes();
+    let letters = letters("ink", Some(12), true);
     // Readers that leave out the blank keep the step.
-    let word = format!("<tspan dx=\"2\" {} font-weight=\"normal\">{rest}</tspan>", fill("faint"));
-    line!(out, "<text class=\"title\" x=\"{x}\" y=\"{y}\" text-anchor=\"start\" {letters}>{name} {word}</text>\n</g>");
+    let word = format!("<tspan class=\"word\" dx=\"2\" {} font-weight=\"normal\">{rest}</tspan>", fill("faint"));
+    line!(out, "<text class=\"title\" x=\"{x}\" y=\"{y}\" text-anchor=\"start\"{letters}>{name} {word}</text>\n</g>");
 }
 
 fn draw_link(out: &mut String, graph: &Graph, sheet: &Sheet, link: &Link, path: &[Point]) {
@@ -88,19 +89,17 @@ fn draw_link(out: &mut String, graph: &Graph, sheet: &Sheet, link: &Link, path: 
     let indices = link.bonds.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
     let title = bonds.iter().map(|bond| bond_title(graph, bond)).collect::<Vec<_>>().join("\n");
     let route = corners(path);
-    let [width, width_of_arrow, width_of_stroke] = if is_multi { [3.2, 2.2, 2.6] } else { [1.3, 1.3, 2.0] };
-    let colour = stroke("bond");
-    line!(out, "<g class=\"{class}\" data-bond=\"{indices}\" fill=\"none\">\n<title>{}</title>", xml(&title));
-    line!(out, "<path class=\"hit\" d=\"{route}\" stroke=\"none\" stroke-width=\"9\" pointer-events=\"stroke\"/>");
-    line!(out, "<path class=\"line\" d=\"{route}\" {colour} stroke-width=\"{width}\" stroke-linejoin=\"round\"/>");
+    // What the parts of a bond share stands at their group.
+    let [width, arrow, stroke_width] =
+        if is_multi { ["3.2", " stroke-width=\"2.2\"", "2.6"] } else { ["1.3", "", "2"] };
+    let shared = format!("fill=\"none\" {} stroke-width=\"{width}\"", stroke("bond"));
+    line!(out, "<g class=\"{class}\" data-bond=\"{indices}\" {shared}>\n<title>{}</title>", xml(&title));
+    line!(out, "<path class=\"hit\" d=\"{route}\" stroke=\"none\"/>\n<path class=\"line\" d=\"{route}\"/>");
     if link.has_arrow {
-        let barb = half_arrow(path, is_multi);
-        let width = width_of_arrow;
-        line!(out, "<path class=\"arrow\" d=\"{barb}\" {colour} stroke-width=\"{width}\" stroke-linecap=\"round\"/>");
+        line!(out, "<path class=\"arrow\" d=\"{}\"{arrow}/>", half_arrow(path, is_multi));
     }
     if let Some(end) = link.stroke {
-        let bar = causal_stroke(path, end);
-        line!(out, "<path class=\"stroke\" d=\"{bar}\" {colour} stroke-width=\"{width_of_stroke}\"/>");
+        line!(out, "<path class=\"stroke\" d=\"{}\" stroke-width=\"{stroke_width}\"/>", causal_stroke(path, end));
     }
     out.push_str("</g>\n");
 }
@@ -170,14 +169,13 @@ fn draw_block(out: &mut String, graph: &Graph, block: &Block, rect: Rect) {
     let [first, second] = if is_part { [14, 28] } else { [16, 29] };
     let border = if is_part { format!(" {}", stroke("line")) } else { String::new() };
     let colours = format!("{}{border}", fill(colour(block)));
-    let large = Letters { colour: "ink", size: 13, is_bold: true };
-    let small = Letters { colour: if block.mark == Mark::None { "faint" } else { "ink" }, size: 10, is_bold: false };
-    let letters = if is_part { [small, large] } else { [large, small] };
-    let [kind, name] = letters.map(Letters::attributes);
+    let large = letters("ink", Some(13), true);
+    let small = letters(if block.mark == Mark::None { "" } else { "ink" }, None, false);
+    let [kind, name] = if is_part { [small, large] } else { [large, small] };
     line!(out, "<g {opening}>\n<title>{}</title>", xml(&title));
     line!(out, "<rect class=\"box\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"5\" {colours}/>");
-    line!(out, "<text class=\"kind\" x=\"{middle}\" y=\"{}\" {kind}>{}</text>", y + first, xml(&block.head));
-    line!(out, "<text class=\"name\" x=\"{middle}\" y=\"{}\" {name}>{}</text>\n</g>", y + second, xml(&block.name));
+    line!(out, "<text class=\"kind\" x=\"{middle}\" y=\"{}\"{kind}>{}</text>", y + first, xml(&block.head));
+    line!(out, "<text class=\"name\" x=\"{middle}\" y=\"{}\"{name}>{}</text>\n</g>", y + second, xml(&block.name));
 }
 
 /// The classes of a block: what it is, and what is special about it.
@@ -251,11 +249,11 @@ fn draw_key(out: &mut String, key: &[(&str, &str)], top: i32) {
             top + 2,
             fill(class)
         );
-        let letters = Letters { colour: "ink", size: 10, is_bold: false }.attributes();
+        let letters = letters("ink", None, false);
         let (left, y) = (x + 22, top + 12);
         line!(
             out,
-            "<text class=\"key\" x=\"{left}\" y=\"{y}\" text-anchor=\"start\" {letters}>{}</text></g>",
+            "<text class=\"key\" x=\"{left}\" y=\"{y}\" text-anchor=\"start\"{letters}>{}</text></g>",
             xml(text)
         );
         x += key_width(text);

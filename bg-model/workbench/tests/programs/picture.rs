@@ -80,7 +80,7 @@ fn parts_laws_states_and_units_are_in_the_picture() {
     let svg = drawn("slider_crank", &[], "--svg");
     for text in [
         "<g class=\"group\" data-group=\"pin_a\">",
-        "pin_a <tspan class=\"word\">revolute z</tspan>",
+        "pin_a <tspan class=\"word\" dx=\"2\" fill=\"#5b6875\" font-weight=\"normal\">revolute z</tspan>",
         "<title>I rod.linear\nlaw: rod.mass\nstates: rod.linear.p_x kg*m/s, ",
         "<title>1 rod.translation\nstates: rod.position_x m, ",
         "effort N, flow m/s, 3 components; stroke at rod.linear",
