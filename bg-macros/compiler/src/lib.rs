@@ -62,6 +62,7 @@ fn compiled(tokens: TokenStream) -> (TokenStream, Faults) {
         Ok(models) => {
             items.extend(emit::version());
             items.extend(models.iter().map(emit::model));
+            items.extend(emit::remarks(&models));
             items.extend(emit::anchors(&source, &models));
             (items, Faults::new())
         }

@@ -26,7 +26,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::report::{Fate, Report, show};
 use super::speeds::of_kind;
 use super::{closing, friction, is_constant, turned};
-use crate::expr::{Environment, Id, Node, Pool, Symbol, exchange, partial, substitute};
+use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, partial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Kind, Origin, State, StateEquations};
 use crate::system::inverse::InverseDynamics;
@@ -67,7 +67,8 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     let joints = joints(equations, &bodies, (&parameters, &guessed))?;
     let of_bodies: BTreeSet<usize> = joints.iter().flat_map(|joint| bodies[joint.child].states()).collect();
     let given: BTreeSet<usize> = joints.iter().flat_map(|joint| joint.given(&bodies)).collect();
-    let wanted = release(equations, (&bodies, &joints), &of_bodies)?;
+    let start = Environment { states: &guessed.start, parameters: &parameters, ..Environment::default() };
+    let wanted = release(equations, (&bodies, &joints), &of_bodies, &start)?;
     let first = 6 * bodies.len() + joints::PROBES;
     let coordinates = motion::coordinates(&mut equations.pool, first, &joints);
     let coordinated = Coordinated { bodies: &bodies, joints: &joints, coordinates: &coordinates };
@@ -266,25 +267,27 @@ fn joints(
 }
 
 /// Takes the reactions of joints out of the equations; they do not work on the motions of these bodies. Gives those that
-/// outputs read. None where something else beside momenta reads one, or an output reads one of a loop, which the joints
-/// may share.
+/// outputs read. None where something else beside momenta reads one, or an output reads one of a loop that joints share.
 fn release(
     equations: &mut StateEquations,
     (of_tree, joints): (&[Body], &[Joint]),
     bodies: &BTreeSet<usize>,
+    start: &Environment<'_>,
 ) -> Option<Wanted> {
     let rows: BTreeSet<usize> = joints.iter().flat_map(|joint| joint.rows.iter().copied()).collect();
     let rigid = friction::rigid(&equations.reactions);
     let multiplier = |row: usize| equations.reactions[row].multiplier;
     let gone: BTreeSet<Symbol> = rows.iter().map(|&row| multiplier(row)).collect();
     let closing: BTreeSet<Symbol> = (0..rigid).filter(|row| !rows.contains(row)).map(multiplier).collect();
-    let shared = if closing.len() > 1 { closing.clone() } else { BTreeSet::new() };
     let outputs: Vec<Id> = equations.outputs.iter().map(|output| output.value).collect();
     let read: BTreeSet<Symbol> = equations.pool.symbols(&outputs).intersection(&gone).copied().collect();
-    let may_be_shared = !closing.is_empty() && !read.is_empty() || has_any(&equations.pool, &outputs, &shared);
-    if may_be_shared || is_read(equations, &gone, bodies) {
+    let is_asked = !read.is_empty() || has_any(&equations.pool, &outputs, &closing);
+    let are_unique = closing.is_empty() || closing.len() == 1 && read.is_empty();
+    let are_unique = are_unique || is_asked && are_independent(equations, of_tree, start);
+    if is_asked && !are_unique || is_read(equations, &gone, bodies) {
         return None;
     }
+    let shared = if are_unique { BTreeSet::new() } else { closing };
     let wanted = Wanted::of(equations, (of_tree, joints), &read);
     let unknown: BTreeSet<Symbol> = gone.union(&shared).filter(|symbol| !wanted.has(symbol)).copied().collect();
     let StateEquations { pool, states, shown, .. } = equations;
@@ -297,6 +300,29 @@ fn release(
     shown.forget(pool, &unknown);
     equations.reactions.retain(|reaction| !gone.contains(&reaction.multiplier));
     Some(wanted)
+}
+
+/// Whether all rows of rigid joints are independent at the start, so that each reaction is one number there and, but for places
+/// of measure zero, anywhere.
+fn are_independent(equations: &mut StateEquations, bodies: &[Body], start: &Environment<'_>) -> bool {
+    let StateEquations { pool, reactions, .. } = equations;
+    let flows: Vec<Id> = reactions[..friction::rigid(reactions)].iter().map(|reaction| reaction.slip.flow).collect();
+    if pool.has_select(&flows) {
+        return false;
+    }
+    let weights = vec![0.0; 6 * bodies.len()];
+    let columns = bodies.iter().enumerate().flat_map(|(index, body)| {
+        let linear = body.linear.into_iter().map(Symbol::state);
+        linear.chain((3..6).map(move |k| velocity(index, k)))
+    });
+    let columns: Vec<Vec<f64>> = columns
+        .map(|symbol| {
+            let slopes = partial(pool, &flows, symbol);
+            evaluate(pool, &slopes, &Environment { weights: &weights, ..*start })
+        })
+        .collect();
+    let rows = (0..flows.len()).map(|row| columns.iter().map(|column| column[row]).collect());
+    numbers::rank(rows.collect()) == flows.len()
 }
 
 /// The flows of all rows and the rates of all momenta as momenta determine them.
