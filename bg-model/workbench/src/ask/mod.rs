@@ -6,6 +6,7 @@ pub mod inputs;
 pub mod machine;
 pub mod maker;
 pub mod parameters;
+pub mod quantity;
 pub mod reference;
 pub mod request;
 pub mod scenes;

@@ -10,6 +10,8 @@ use bg_model::input::Input;
 use bg_model::parameters::{ParameterError, Parameters};
 use thiserror::Error;
 
+use super::quantity::{QuantityError, quantity};
+
 /// A parameter setting that cannot be used.
 #[derive(Debug, Error)]
 pub enum SettingError {
@@ -34,15 +36,15 @@ pub enum SettingError {
     /// A `--set` without `=`.
     #[error("--set {0}: give it as NAME=VALUE, for example --set mass=2")]
     NoValue(String),
-    /// A value that is no number.
-    #[error("{place}: the value of `{name}` must be a number, and `{value}` is none")]
+    /// A value that is no number, or in a unit that measures something else.
+    #[error("{place}: the value of `{name}` {fault}")]
     NotANumber {
         /// `--set` or the file.
         place: String,
         /// The parameter's name.
         name: String,
-        /// The text or the kind of value found.
-        value: String,
+        /// What is wrong with it.
+        fault: QuantityError,
     },
     /// A file that cannot be read.
     #[error("cannot read {}: {source}", path.display())]
@@ -193,14 +195,9 @@ pub fn merge(
         let setting = &one_line(setting);
         let (name, value) = setting.split_once('=').ok_or_else(|| SettingError::NoValue(setting.clone()))?;
         let (name, value) = (name.trim(), value.trim());
-        let number = value.parse().map_err(|_| SettingError::NotANumber {
-            place: format!("--set {setting}"),
-            name: name.to_owned(),
-            value: value.to_owned(),
-        });
-        // An unknown name is the better message where both are wrong.
-        let number = if parameters.values.get(name).is_some() { number? } else { 0.0 };
-        set(&mut parameters, &format!("--set {setting}"), name, number)?;
+        let place = format!("--set {setting}");
+        let number = measured(&parameters, &place, name, value)?;
+        set(&mut parameters, &place, name, number)?;
     }
     Ok(parameters)
 }
@@ -250,6 +247,14 @@ pub(crate) fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
+/// The number that a text gives of a parameter, in its unit. Of an unknown name any: that is the better message where both
+/// are wrong.
+fn measured(parameters: &Chosen, place: &str, name: &str, text: &str) -> Result<f64, SettingError> {
+    let Some(index) = parameters.values.place(name) else { return Ok(0.0) };
+    let fault = |fault| SettingError::NotANumber { place: place.to_owned(), name: name.to_owned(), fault };
+    quantity(text, parameters.values.table()[index].unit).map_err(fault)
+}
+
 fn set_from_toml(parameters: &mut Chosen, path: &Path, text: &str) -> Result<(), SettingError> {
     let entries: toml::Table = text.parse().map_err(|fault: toml::de::Error| {
         let [line, column] = place_of(&fault, text);
@@ -265,11 +270,8 @@ pub(crate) fn set_from_table(parameters: &mut Chosen, place: &str, entries: &tom
             toml::Value::Float(number) => *number,
             // Every whole number that a parameter can sensibly have is exact in f64.
             toml::Value::Integer(number) => *number as f64,
-            _ if parameters.values.get(name).is_none() => 0.0,
-            other => {
-                let (place, name) = (place.to_owned(), name.clone());
-                return Err(SettingError::NotANumber { place, name, value: one_line(&other.to_string()) });
-            }
+            toml::Value::String(text) => measured(parameters, place, name, text)?,
+            other => measured(parameters, place, name, &one_line(&other.to_string()))?,
         };
         set(parameters, place, name, number)?;
     }

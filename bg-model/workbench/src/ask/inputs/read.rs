@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use super::{Named, Setting, Source, made, named};
 use crate::ask::parameters::nearest;
+use crate::ask::quantity::quantity;
 use crate::files::crc32;
 use crate::files::head::{Head, head};
 
@@ -145,7 +146,7 @@ pub fn settings(settings: &[String], infos: &[InputInfo]) -> Result<Vec<Setting>
         let Some(index) = infos.iter().position(|info| info.name == name) else {
             return Err(unknown(setting, name, infos));
         };
-        inputs[index] = read(setting, value.trim())?;
+        inputs[index] = read(setting, value.trim(), infos[index].unit)?;
     }
     Ok(inputs)
 }
@@ -159,9 +160,9 @@ fn unknown(setting: &str, name: &str, infos: &[InputInfo]) -> InputSettingError 
     }
 }
 
-/// A number, or a table from a file.
-fn read(setting: &str, value: &str) -> Result<Setting, InputSettingError> {
-    if let Ok(number) = value.parse::<f64>() {
+/// A number, with a unit or in that of the input, or a table from a file.
+fn read(setting: &str, value: &str, unit: &str) -> Result<Setting, InputSettingError> {
+    if let Ok(number) = quantity(value, unit) {
         return if number.is_finite() {
             Ok(Setting::Constant(number))
         } else {
