@@ -55,8 +55,39 @@ pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
         let entry = |(row, value)| Entry { row, column, value };
         entries.extend(slopes.into_iter().enumerate().map(entry).filter(|entry| !pool.is_zero(entry.value)));
     }
+    let needed = needed(&entries, n, unknowns.len());
+    let late = needed[unknowns.len() - rows..].iter().filter(|&&needed| needed).count();
+    let unknowns = unknowns.into_iter().zip(&needed).filter(|(_, needed)| **needed).map(|(symbol, _)| symbol).collect();
+    let mut entries = numbered(entries, n, &needed);
     entries.sort_by_key(|entry| (entry.row, entry.column));
-    Some(closed(pool, equations, inverse, (unknowns, rows), entries))
+    Some(closed(pool, equations, inverse, (unknowns, late), entries))
+}
+
+/// Which unknowns the rates depend on, through the equations of others as well: not those of joints that nobody watches.
+fn needed(entries: &[Entry], n: usize, unknowns: usize) -> Vec<bool> {
+    let mut needed = vec![false; unknowns];
+    let mut is_open = true;
+    while is_open {
+        is_open = false;
+        for Entry { row, column, .. } in entries {
+            let Some(unknown) = column.checked_sub(n).filter(|&unknown| !needed[unknown]) else { continue };
+            if row.checked_sub(n).is_none_or(|row| needed[row]) {
+                needed[unknown] = true;
+                is_open = true;
+            }
+        }
+    }
+    needed
+}
+
+/// The entries without the unknowns that are not needed and their equations.
+fn numbered(entries: Vec<Entry>, n: usize, needed: &[bool]) -> Vec<Entry> {
+    let place = |place: usize| match place.checked_sub(n) {
+        None => Some(place),
+        Some(unknown) => needed[unknown].then(|| n + needed[..unknown].iter().filter(|&&needed| needed).count()),
+    };
+    let moved = |entry: Entry| Some(Entry { row: place(entry.row)?, column: place(entry.column)?, ..entry });
+    entries.into_iter().filter_map(moved).collect()
 }
 
 /// The rates with the accelerations in their places.
