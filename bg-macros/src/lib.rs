@@ -30,6 +30,7 @@ use proc_macro::TokenStream;
 /// [start-velocities]: #start-velocities
 /// [statements]: #statements
 /// [stops-with-a-restitution]: #stops-with-a-restitution
+/// [tables]: #table
 /// [the-square-root-at-zero]: #the-square-root-at-zero
 /// [the-start]: #the-start
 /// [units]: #units

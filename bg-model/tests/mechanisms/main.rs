@@ -19,4 +19,5 @@ mod spatial_slider_crank;
 mod start;
 mod stewart_platform;
 mod tables;
+mod tasks;
 mod text;
