@@ -100,7 +100,11 @@ fn crank_speed(run: &Recording) -> Option<([f64; 3], f64)> {
     let area: f64 = (1..speed.len()).map(|k| (times[k] - times[k - 1]) * (speed[k] + speed[k - 1]) / 2.0).sum();
     let duration = times.last()? - times.first()?;
     let mean = if duration > 0.0 { area / duration } else { *speed.first()? };
-    let late = column.settled.filter(|_| from == SETTLED);
-    let Peaks { least, largest } = late.unwrap_or_else(|| peaks(run, column));
+    let Peaks { least, largest } = if first == 0 {
+        peaks(run, column)
+    } else {
+        // Where nobody has looked between the samples, they are what is known.
+        column.settled.or_else(|| Peaks::of_samples(times, speed))?
+    };
     Some(([mean, least.value, largest.value], from))
 }
