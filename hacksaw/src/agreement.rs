@@ -79,22 +79,23 @@ pub struct Agreement {
     pub deviations: Vec<Deviation>,
 }
 
-/// Runs `scene` and the literal model until `t_end` (s) with the same `values` and compares them at `instants` (s).
+/// Runs `scene` and the literal model with the same `values` and compares them.
 ///
 /// # Errors
 /// Values that the scene does not take, and a run that fails.
 // To be inlined, as `literal` is: compiled where it is called, since no program does.
 #[inline]
-pub fn compare(
-    scene: Scene,
-    values: &HacksawParameters,
-    steps: Steps,
-    t_end: f64,
-    instants: &[f64],
-) -> Result<Agreement, Box<dyn Error>> {
-    let job = Job { steps, t_end, instants };
+pub fn compare(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Agreement, Box<dyn Error>> {
+    beside(scene, values, job, literal(scene, values, job)?)
+}
+
+/// Runs `scene` and compares it with the run that [`literal`] has given for the same `values` and `job`.
+///
+/// # Errors
+/// Values that the scene does not take, and a run that fails.
+#[inline]
+pub fn beside(scene: Scene, values: &HacksawParameters, job: Job, literal: Run) -> Result<Agreement, Box<dyn Error>> {
     let reduced = scene.visit(Reduced { scene, values, job })?;
-    let literal = literal(scene, values, job)?;
     let mut whole = literal.samples.clone();
     add_angles(&mut whole)?;
     let deviations = deviations(&reduced.samples, &whole)?;
@@ -110,12 +111,15 @@ pub fn horizon(scene: Scene) -> f64 {
     if scene == Scene::FreeRun { 1.0 } else { 5.0 }
 }
 
-/// What to run.
-#[derive(Clone, Copy)]
-struct Job<'a> {
-    steps: Steps,
-    t_end: f64,
-    instants: &'a [f64],
+/// How both are run.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'a> {
+    /// How their steps are chosen.
+    pub steps: Steps,
+    /// Until when, s.
+    pub t_end: f64,
+    /// When they are compared, s.
+    pub instants: &'a [f64],
 }
 
 impl Job<'_> {
@@ -157,9 +161,12 @@ impl MechanismVisitor for Reduced<'_> {
     }
 }
 
-/// The run of the literal model that `scene` stands for.
+/// The run of the literal model that `scene` stands for: the same for all but the free run.
+///
+/// # Errors
+/// Values that no machine has, and a run that fails.
 #[inline]
-fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Run, Box<dyn Error>> {
+pub fn literal(scene: Scene, values: &HacksawParameters, job: Job) -> Result<Run, Box<dyn Error>> {
     let mut values = values.clone();
     if scene != Scene::FreeRun {
         return job.run(&*Hacksaw::new(values)?.machine());
