@@ -14,7 +14,7 @@ use bg_model::run::{Request, Simulation, sample_times};
 use bg_model::simulation::{EachSample, Samples, Settings, Span, integrate};
 use bg_model::system::{Model, switches, values};
 use bg_workbench::tables::{rate_operations, table};
-use hacksaw::agreement::{Steps, compare, horizon};
+use hacksaw::agreement::{Job, Steps, compare, horizon};
 use hacksaw::mechanism::{HacksawParameters, Paper, PaperParameters};
 use hacksaw::scenes::Scene;
 use hacksaw_planar::{self as planar, Comparison, Planar};
@@ -196,7 +196,7 @@ fn deviation(scene: Scene) -> (f64, String) {
     // The paper's 51 instants, over as long as the comparison means something.
     let instants = sample_times(0.0, t_end / 50.0, t_end);
     let steps = Steps::ByError { rtol: RTOL, atol: ATOL };
-    let agreement = compare(scene, &HacksawParameters::default(), steps, t_end, &instants);
+    let agreement = compare(scene, &HacksawParameters::default(), Job { steps, t_end, instants: &instants });
     let agreement = agreement.expect("the paper's case runs");
     let relative = agreement.deviations.iter().map(|deviation| {
         (deviation.largest / deviation.magnitude.max(1.0), format!("{} at {} s", deviation.name, deviation.time))
