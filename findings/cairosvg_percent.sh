@@ -3,7 +3,7 @@
 #
 # Guess: `font-size="75%"` of a `tspan` is three quarters of the letters around it, as the standard says, or the attribute is not read.
 # Seen: it is three quarters of the picture: a subscript covers the sheet. A size in em, or a number, is right.
-# Output:
+# Output seen:
 #   in percent 8 % of the sheet is dark, in em 0.5 %
 # Fails where both are alike.
 set -euo pipefail

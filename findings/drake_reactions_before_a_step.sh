@@ -4,7 +4,7 @@
 # Guess: the reaction port of a plant gives the forces in the joints of the state at hand, whether time is continuous or goes in steps.
 # Seen: a discrete plant gives zeros until its first step, for a rod that hangs askew too; then the forces of that step. A continuous one
 # gives them at once. Initializing a simulator does not help.
-# Output:
+# Output seen:
 #   continuous: 21.39 N
 #   discrete: 0.00 N, after one step 21.39 N
 # Fails where a discrete plant has the force before a step.

@@ -3,7 +3,7 @@
 #
 # Guess: a row of `simulate_fmu` has inputs and outputs of one instant, and a name that no variable has is an error.
 # Seen: in Co-Simulation the column of an input is one row late: at 0.5 s it has what it was at 0.4 s. An unknown name is left out without a word.
-# Output:
+# Output seen:
 #   columns: ('time', 'u', 'y')
 #   the input is t; at t = 0.5 the row says 0.4
 # Fails where the row has the input of its instant, or the unknown name is refused.

@@ -3,7 +3,7 @@
 #
 # Guess: `simulate_until` with steps of 10 ms and an end at 25 ms stops at 20 ms, takes a shorter step, or says that it cannot.
 # Seen: it goes on to 30 ms and says True.
-# Output:
+# Output seen:
 #   asked for 25 ms: True, at 30 ms
 # Fails where it stops at 25 ms or before.
 set -euo pipefail

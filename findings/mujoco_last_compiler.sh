@@ -4,7 +4,7 @@
 # Guess: a second `compiler` section counts for what comes after it; at the end of a file it changes nothing.
 # Seen: MuJoCo reads all sections before the bodies, wherever they stand: the last one turns the angles of the whole file into degrees.
 # Pinocchio reads the first one. The same file is two machines.
-# Output:
+# Output seen:
 #   mujoco: range [-0.01745329  0.01745329]
 #   pinocchio: range [-1.  1.]
 # Fails where the two agree.

@@ -4,7 +4,7 @@
 # Guess: its wheels bring the C++ headers of Pinocchio, so that a C++ program that reads a URDF can be compiled with what pip has installed.
 # Seen: the headers are there, but not those that they include: neither Eigen/Core (the package cmeel-eigen has it, and is no
 # dependency) nor urdf_model/model.h (no package of these has it: urdfdom's are installed without urdfdom_headers).
-# Output:
+# Output seen:
 #   21:#include <urdf_model/model.h>
 #   python/lib/python3.11/site-packages/cmeel.prefix/include/pinocchio/multibody/fwd.hpp:10:#include <Eigen/Core>
 #   urdf_model/model.h: not installed

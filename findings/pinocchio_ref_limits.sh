@@ -3,7 +3,7 @@
 #
 # Guess: Pinocchio reads an MJCF hinge with `ref` as MuJoCo does: its angle in the file's pose is `ref`, and `range` are ends of that angle.
 # Seen: the angle is MuJoCo's, the ends are not: Pinocchio has them lower by `ref`. The pose at the end of the range is another one.
-# Output:
+# Output seen:
 #   mujoco: angle in the file's pose [0.3], range [[-1.0, 1.0]]
 #   pinocchio: angle in the file's pose [0.3], range [-1.3] [0.7]
 # Fails where the ends of the two agree, or the angles do not.

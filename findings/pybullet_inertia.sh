@@ -4,7 +4,7 @@
 # Guess: `loadURDF` takes the tensor of `<inertia>`, as it takes the mass beside it.
 # Seen: it takes the mass, and makes a tensor of its own from the shape for collisions; without a shape, one of a body of some
 # millimetres. A rod of 2 kg on a hinge starts to fall at 10 1/s^2 in place of 8.33; with the flag URDF_USE_INERTIA_FROM_FILE at 8.33.
-# Output:
+# Output seen:
 #   as it is: moment of inertia 1.3e-06, acceleration -10.000
 #   with the flag: moment of inertia 0.1, acceleration -8.333
 # Fails where both are the same.

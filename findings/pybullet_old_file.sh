@@ -4,7 +4,7 @@
 # Guess: `loadURDF` reads the file that is there.
 # Seen: a file that has been read before is taken from memory, though it was written anew: the second robot has the first one's mass.
 # Where `enableFileCaching` is 0 it has its own.
-# Output:
+# Output seen:
 #   first 1.0, changed 1.0, without the cache 5.0
 # Fails where the changed file is read at once.
 set -euo pipefail

@@ -4,7 +4,7 @@
 # Guess: an event whose function is zero at the start counts when it becomes zero again: a ball thrown up from the floor ends its run when it lands,
 # v^2 / g = 0.2039 s later.
 # Seen: `solve_ivp` ends at once, at t = 0. CVODE lands. One rounding below the floor both end at once.
-# Output:
+# Output seen:
 #   from 0.0: scipy at 0.0000, CVODE at 0.2039
 #   from -1e-16: scipy at 0.0000, CVODE at 0.0000
 #   from 1e-16: scipy at 0.2039, CVODE at 0.2039

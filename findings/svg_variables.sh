@@ -4,7 +4,7 @@
 # Guess: a reader that knows no variables of CSS passes over `fill:var(--a)` and keeps the declaration before it, as the standard of CSS asks for what is not
 # understood. So `fill:#0f0;fill:var(--a)` is green everywhere.
 # Seen: resvg takes the second one and paints black. A rule inside `@supports` it passes over, and keeps the attribute.
-# Output:
+# Output seen:
 #   two declarations: [0, 0, 0]
 #   in @supports: [0, 255, 0]
 # Fails where the first one is not black.

@@ -3,7 +3,7 @@
 #
 # Guess: a revolute joint whose `<limit>` names an effort and a speed but no ends turns freely, as one without limits.
 # Seen: in MuJoCo and Drake it does. In Pinocchio both ends are 0, the defaults of the format: the joint has no range at all. No program says a word.
-# Output:
+# Output seen:
 #   mujoco: is limited [0]
 #   drake: [-inf] [inf]
 #   pinocchio: [0.] [0.]

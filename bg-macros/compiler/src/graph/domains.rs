@@ -180,15 +180,15 @@ fn check(
         let graph: &BondGraph = graph;
         let types = Types::new(graph, efforts);
         for definition in &graph.lets {
-            let (shape, found) =
-                types.declared(&definition.value, definition.unit.as_deref().unwrap_or_default(), faults);
+            let (shape, found) = types.declared(&definition.value, definition.declared, faults);
             if let Some(clause) = &definition.clause
                 && shape != Shape::of_components(clause.components)
             {
                 let (what, expected) = (clause.what.clone(), Shape::of_components(clause.components));
                 faults.push(Fault::new(definition.value.span, &GraphFault::ShapeOf { what, expected, found: shape }));
             }
-            if let (Some(declared), Quantity::Known(found)) = (definition.dimension, found)
+            let declared = definition.declared.map(|unit| unit.dimension);
+            if let (Some(declared), Quantity::Known(found)) = (declared, found)
                 && declared != found
             {
                 let what = format!("`{}` is declared in the first and has the second", definition.name.text);

@@ -12,6 +12,8 @@ mod term;
 mod typing;
 pub mod units;
 
+use bg_units::Unit;
+
 use crate::graph::units::{Dimension, Domain};
 use crate::source::ast::Name;
 
@@ -135,7 +137,7 @@ pub struct Let {
     /// Its value.
     pub value: Term,
     /// Its unit, when declared.
-    pub dimension: Option<Dimension>,
+    pub declared: Option<Unit>,
     /// The unit as written.
     pub unit: Option<String>,
     /// The clause of a mechanism word that it stands for, if any.

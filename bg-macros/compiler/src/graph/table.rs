@@ -38,6 +38,14 @@ pub struct Piece {
     pub integral: f64,
 }
 
+impl Table {
+    /// Whether it has a value for every argument.
+    #[must_use]
+    pub fn is_everywhere(&self) -> bool {
+        self.pieces.iter().all(|piece| piece.cubic.is_some())
+    }
+}
+
 /// The pieces of a function through at least two points whose arguments ascend.
 pub fn pieces(points: &[(f64, f64)], between: Between, beyond: Beyond) -> (Vec<f64>, Vec<Piece>) {
     let slopes = match between {

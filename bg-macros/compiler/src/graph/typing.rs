@@ -110,13 +110,13 @@ impl<'a> Types<'a> {
         Checker { types: self, variable: None, number: Quantity::Known(Dimension::NONE), faults }.check(term)
     }
 
-    /// Shape and unit of what is declared in a unit. Where that is not coherent, bare numbers are pure numbers: nobody
+    /// Shape and unit of what may be declared in a unit. Where that is not coherent, bare numbers are pure numbers: nobody
     /// could say whether they are in SI or in that unit.
-    pub fn declared(&self, term: &Term, unit: &str, faults: &mut Vec<Fault>) -> Typed {
-        if unit.parse::<Unit>().is_ok_and(|unit| !unit.is_coherent()) {
-            self.with_pure_numbers(term, faults)
-        } else {
+    pub fn declared(&self, term: &Term, unit: Option<Unit>, faults: &mut Vec<Fault>) -> Typed {
+        if unit.is_none_or(Unit::is_coherent) {
             self.of(term, None, faults)
+        } else {
+            self.with_pure_numbers(term, faults)
         }
     }
 
@@ -131,7 +131,7 @@ impl<'a> Types<'a> {
             let definition = &self.graph.lets[index];
             let (found, quantity) = self.silently(&definition.value, None);
             let shape = definition.clause.as_ref().map_or(found, |clause| Shape::of_components(clause.components));
-            let typed = (shape, definition.dimension.map_or(quantity, Quantity::Known));
+            let typed = (shape, definition.declared.map_or(quantity, |unit| Quantity::Known(unit.dimension)));
             self.lets.borrow_mut()[index] = Some(typed);
             typed
         })

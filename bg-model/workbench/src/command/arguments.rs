@@ -122,7 +122,8 @@ pub struct ModelArguments {
     #[arg(long, value_name = "NAME")]
     pub scene: String,
 
-    /// Set a parameter, in its unit or another one, as in length=75mm; can be given again and again, the last one counts. Comes after --params
+    /// Set a parameter, in its unit or another one, as in length=75mm; can be given again and again, the last one
+    /// counts. Comes after --params
     #[arg(long = "set", value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub set: Vec<String>,
 

@@ -12,7 +12,7 @@ use crate::fault::Fault;
 use crate::graph::term::{Reference, Term, TermKind};
 use crate::graph::typing::{Quantity, Shape, Types};
 use crate::graph::units::Dimension;
-use crate::graph::{Bond, GraphFault, Law, Let, NodeId, NodeKind};
+use crate::graph::{Bond, GraphFault, Integral, Law, Let, NodeId, NodeKind};
 use crate::source::ast::ElementKind;
 use crate::source::clause::{Clause, Given};
 
@@ -20,10 +20,10 @@ impl Resolver {
     /// The unit of a value as its definition writes it: J and N*m are one dimension but read differently.
     fn written_unit(&self, value: &Term) -> Option<String> {
         match value.kind {
-            TermKind::Reference(Reference::Let(index)) => self.graph.lets[index].unit.clone().filter(|unit| {
-                let unit: Result<Unit, _> = unit.parse();
-                unit.is_ok_and(Unit::is_coherent)
-            }),
+            TermKind::Reference(Reference::Let(index)) => {
+                let Let { unit, declared, .. } = &self.graph.lets[index];
+                unit.clone().filter(|_| declared.is_some_and(Unit::is_coherent))
+            }
             TermKind::Reference(Reference::Energy(_) | Reference::StoredEnergy) => Some("J".to_owned()),
             TermKind::Reference(Reference::Flow(node)) => self.bond_of(node).map(Bond::flow_unit),
             TermKind::Reference(Reference::Displacement(node)) => self.bond_of(node).map(Bond::displacement_unit),
@@ -210,12 +210,12 @@ impl Resolver {
         let types = Types::new(&self.graph, &efforts);
         let mut faults = Vec::new();
         let mut observed = Vec::new();
-        for (observation, declared) in self.graph.observations.iter().zip(&self.observed) {
-            let (shape, quantity) = types.declared(&observation.value, &observation.unit, &mut faults);
+        for (observation, &declared) in self.graph.observations.iter().zip(&self.observed) {
+            let (shape, quantity) = types.declared(&observation.value, declared, &mut faults);
             let unit = match (declared, quantity) {
-                (Some(declared), Quantity::Known(found)) if *declared != found => {
+                (Some(declared), Quantity::Known(found)) if declared.dimension != found => {
                     let what = format!("`{}` is declared in the first and has the second", observation.name);
-                    let fault = GraphFault::Units { what, left: *declared, right: found };
+                    let fault = GraphFault::Units { what, left: declared.dimension, right: found };
                     faults.push(Fault::new(observation.value.span, &fault));
                     String::new()
                 }
@@ -227,62 +227,57 @@ impl Resolver {
         }
         for turn in &self.graph.turns {
             types.of(&turn.direction, None, &mut faults);
-            let (shape, quantity) = types.of(&turn.speed, None, &mut faults);
-            let (what, span) = ("the speed of an angle".to_owned(), turn.speed.span);
-            if shape != Shape::Scalar {
-                faults.push(Fault::new(span, &GraphFault::ShapeOf { what, expected: Shape::Scalar, found: shape }));
-            } else if let Quantity::Known(found) = quantity
-                && found != Dimension::NONE.per(Dimension::SECOND)
-            {
-                let what = "the speed of an angle has the first and should have the second".to_owned();
-                let (left, right) = (found, Dimension::NONE.per(Dimension::SECOND));
-                faults.push(Fault::new(span, &GraphFault::Units { what, left, right }));
-            }
+            let per_second = Dimension::NONE.per(Dimension::SECOND);
+            expect_scalar(&types, &turn.speed, "the speed of an angle", per_second, &mut faults);
         }
         let known = |quantity| if let Quantity::Known(dimension) = quantity { dimension } else { Dimension::NONE };
         let closed: Vec<_> = self.graph.closes.iter().map(|close| types.of(&close.gap, None, &mut faults)).collect();
-        for integral in &self.graph.integrals {
-            let (Some(start), Some(declared)) = (&integral.start, integral.declared) else { continue };
-            let (shape, quantity) = types.of(start, None, &mut faults);
-            let what = || format!("the start of `{}`", integral.name);
-            if shape != Shape::Scalar {
-                faults.push(Fault::new(
-                    start.span,
-                    &GraphFault::ShapeOf { what: what(), expected: Shape::Scalar, found: shape },
-                ));
-            } else if let Quantity::Known(found) = quantity
-                && found != declared
-            {
-                let what = format!("{} is to have the first and has the second", what());
-                faults.push(Fault::new(start.span, &GraphFault::Units { what, left: declared, right: found }));
+        let mut integrands = Vec::new();
+        for Integral { name, value, declared, start, .. } in &self.graph.integrals {
+            let Some(declared) = *declared else {
+                let (shape, quantity) = types.of(value, None, &mut faults);
+                expect_shape(value, "an integrand", shape, &mut faults);
+                integrands.push(known(quantity));
+                continue;
+            };
+            let rate = declared.per(Dimension::SECOND);
+            expect_scalar(&types, value, &format!("the rate of `{name}`"), rate, &mut faults);
+            if let Some(start) = start {
+                expect_scalar(&types, start, &format!("the start of `{name}`"), declared, &mut faults);
             }
+            integrands.push(rate);
         }
-        let integrands: Vec<_> =
-            self.graph.integrals.iter().map(|integral| types.of(&integral.value, None, &mut faults)).collect();
         for (observation, (shape, unit)) in self.graph.observations.iter_mut().zip(observed) {
             (observation.shape, observation.unit) = (shape, unit);
         }
         for (close, (shape, quantity)) in self.graph.closes.iter_mut().zip(closed) {
             (close.shape, close.dimension) = (shape, known(quantity));
         }
-        for (integral, (shape, quantity)) in self.graph.integrals.iter_mut().zip(integrands) {
-            integral.dimension = known(quantity);
-            if shape != Shape::Scalar {
-                let what = "an integrand".to_owned();
-                let fault = GraphFault::ShapeOf { what, expected: Shape::Scalar, found: shape };
-                faults.push(Fault::new(integral.value.span, &fault));
-            }
-            let Some(declared) = integral.declared else { continue };
-            integral.dimension = declared.per(Dimension::SECOND);
-            if let Quantity::Known(found) = quantity
-                && found != integral.dimension
-            {
-                let what = format!("the rate of `{}` is to have the first and has the second", integral.name);
-                let fault = GraphFault::Units { what, left: integral.dimension, right: found };
-                faults.push(Fault::new(integral.value.span, &fault));
-            }
+        for (integral, dimension) in self.graph.integrals.iter_mut().zip(integrands) {
+            integral.dimension = dimension;
         }
         self.faults.extend(faults);
+    }
+}
+
+/// A fault where `what`, this term, is no scalar. Gives whether it is one.
+fn expect_shape(term: &Term, what: &str, found: Shape, faults: &mut Vec<Fault>) -> bool {
+    if found != Shape::Scalar {
+        let fault = GraphFault::ShapeOf { what: what.to_owned(), expected: Shape::Scalar, found };
+        faults.push(Fault::new(term.span, &fault));
+    }
+    found == Shape::Scalar
+}
+
+/// A fault where `what`, this term, is no scalar of this dimension.
+fn expect_scalar(types: &Types<'_>, term: &Term, what: &str, expected: Dimension, faults: &mut Vec<Fault>) {
+    let (shape, quantity) = types.of(term, None, faults);
+    if expect_shape(term, what, shape, faults)
+        && let Quantity::Known(found) = quantity
+        && found != expected
+    {
+        let what = format!("{what} has the first and should have the second");
+        faults.push(Fault::new(term.span, &GraphFault::Units { what, left: found, right: expected }));
     }
 }
 

@@ -20,11 +20,7 @@ impl Resolver {
         let units = [self.unit(argument), self.unit(value)];
         let mut rows: Vec<(f64, f64)> = Vec::new();
         for row in rows_of(points) {
-            let ExpressionKind::Vector(pair) = &row.kind else {
-                self.fault(row.span, &GraphFault::TablePoint { name: name.text.clone() });
-                continue;
-            };
-            let [x, y] = pair.as_slice() else {
+            let Some([x, y]) = pair_of(row) else {
                 self.fault(row.span, &GraphFault::TablePoint { name: name.text.clone() });
                 continue;
             };
@@ -63,6 +59,11 @@ impl Resolver {
 /// The rows as they are written.
 fn rows_of(points: &Expression) -> &[Expression] {
     if let ExpressionKind::Vector(rows) = &points.kind { rows } else { std::slice::from_ref(points) }
+}
+
+/// Argument and value of a row.
+fn pair_of(row: &Expression) -> Option<&[Expression; 2]> {
+    if let ExpressionKind::Vector(pair) = &row.kind { pair.as_slice().try_into().ok() } else { None }
 }
 
 /// What may be meant by the call of an unknown function.

@@ -129,7 +129,9 @@ impl Explain for FileFault {
             Self::Deep | Self::Many => "write parts that belong together into one file".to_owned(),
             Self::Elsewhere { .. } => "add a `use` of that file".to_owned(),
             Self::NoPart { .. } => "make a part of what is to be used, or remove this".to_owned(),
-            Self::NoPoints { .. } => "write two columns of numbers separated by commas, with a head such as `speed [rpm],torque [N*m]` or without".to_owned(),
+            Self::NoPoints { .. } => "write two columns of numbers separated by commas, with a head such as \
+                                      `speed [rpm],torque [N*m]` or without"
+                .to_owned(),
             Self::NoText => "close what is open, and quote what is text".to_owned(),
         }
     }
@@ -218,12 +220,7 @@ impl Gathering<'_> {
         if self.known.len() >= MOST {
             return self.fault(span, &FileFault::Many);
         }
-        let folder = self.folder(by);
-        let path = folder.join(path);
-        let opened = match (self.open)(&path) {
-            Ok(opened) => opened,
-            Err(reason) => return self.fault(span, &FileFault::Unreadable { reason, folder }),
-        };
+        let Some((path, opened)) = self.opened(by, path, span) else { return };
         let known = self.known.iter().position(|known| known.file == opened.file);
         if let Some(start) = known.and_then(|known| self.around.iter().position(|around| *around == known)) {
             let circle = self.around[start..].iter().chain([&self.around[start]]);
@@ -244,24 +241,24 @@ impl Gathering<'_> {
 
     /// The points of a file that a table of the file `by` names.
     fn points(&mut self, by: usize, name: &str, span: Span) -> Option<TokenStream> {
-        let folder = self.folder(by);
-        let path = folder.join(name);
-        let Opened { file, text } = match (self.open)(&path) {
-            Ok(opened) => opened,
-            Err(reason) => {
-                self.fault(span, &FileFault::Unreadable { reason, folder });
-                return None;
-            }
-        };
+        let (path, Opened { file, text }) = self.opened(by, name, span)?;
         let points = points::points(&text, span);
         self.known.push(Known { file, ..Known::default() });
         self.gathered.files.push(File { path: path.clone(), text, called: String::new() });
         points.map_err(|reason| self.fault(span, &FileFault::NoPoints { file: path, reason })).ok()
     }
 
-    /// The folder of a file.
-    fn folder(&self, of: usize) -> PathBuf {
-        self.gathered.files[of].path.parent().unwrap_or(Path::new("")).to_owned()
+    /// The file of this path from the folder of the file `by`.
+    fn opened(&mut self, by: usize, path: &str, span: Span) -> Option<(PathBuf, Opened)> {
+        let folder = self.gathered.files[by].path.parent().unwrap_or(Path::new("")).to_owned();
+        let path = folder.join(path);
+        match (self.open)(&path) {
+            Ok(opened) => Some((path, opened)),
+            Err(reason) => {
+                self.fault(span, &FileFault::Unreadable { reason, folder });
+                None
+            }
+        }
     }
 
     /// Each file uses what it names.

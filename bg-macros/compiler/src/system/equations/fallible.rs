@@ -92,8 +92,7 @@ impl Signals<'_> {
             TermKind::Component(inner, _) | TermKind::Negate(inner) => self.nature(inner),
             TermKind::Lookup(table, argument) => {
                 let argument = self.nature(argument);
-                let is_everywhere = self.graph.tables[*table].pieces.iter().all(|piece| piece.cubic.is_some());
-                if is_everywhere { argument } else { argument.partial() }
+                if self.graph.tables[*table].is_everywhere() { argument } else { argument.partial() }
             }
             TermKind::Chain(first, rest) => rest.iter().fold(self.nature(first), |left, operation| {
                 let right = self.nature(&operation.operand);

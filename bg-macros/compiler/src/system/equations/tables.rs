@@ -27,8 +27,7 @@ impl Signals<'_> {
         let table = &self.graph.tables[table];
         let is_of_law = |symbol: &Symbol| matches!(symbol, Symbol::Law(_) | Symbol::Storage(_));
         let is_known = self.fallible.iter().any(|law| law.value == value);
-        let is_defined = table.pieces.iter().all(|piece| piece.cubic.is_some());
-        if !is_defined && !is_known && !self.pool.symbols(&[argument]).iter().any(is_of_law) {
+        if !table.is_everywhere() && !is_known && !self.pool.symbols(&[argument]).iter().any(is_of_law) {
             self.fallible.push(FallibleLaw::new("table", table.name.clone(), value));
         }
     }
