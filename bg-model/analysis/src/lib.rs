@@ -2,4 +2,5 @@
 
 pub mod identify;
 pub mod linear;
+pub mod npz;
 pub mod thinning;

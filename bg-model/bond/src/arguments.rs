@@ -9,6 +9,7 @@ use std::path::PathBuf;
 use bg_compiler::fault::near_miss;
 use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
+use clap_complete::Shell;
 
 use crate::served::Served;
 
@@ -61,6 +62,18 @@ pub enum Own {
         /// program unless given
         #[arg(long, value_name = "FOLDER")]
         page: Option<PathBuf>,
+    },
+    /// Prints what makes a shell complete commands and options
+    Completions {
+        /// The shell
+        #[arg(value_name = "SHELL")]
+        shell: Shell,
+    },
+    /// Prints the manual page, or writes those of all commands
+    Man {
+        /// Folder for a page of each command
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
     /// Writes a first mechanism
     New {
@@ -172,6 +185,27 @@ fn command() -> Command {
     program.about("Runs and studies mechanisms in text files, in the language of `bond_graph!`").after_help(AFTER)
 }
 
+/// The command line with all options of the workbench's commands, for manual pages and shells.
+pub fn whole() -> Command {
+    let of_workbench = bg_workbench::command::commands();
+    let file = || Arg::new("FILE").index(1).required(true).help("The file");
+    // Places that the workbench's commands have move behind the file.
+    let behind = |arg: Arg| arg.get_index().map_or(arg.clone(), |index| arg.index(index + 1));
+    let full = |known: &Command| known.clone().mut_args(behind).arg(file());
+    let mut program = command();
+    for (name, _) in COMMANDS {
+        let known = of_workbench.find_subcommand(name).expect("a command of the workbench");
+        program = program.mut_subcommand(name, |_| full(known));
+    }
+    let golden = of_workbench.find_subcommand("golden").expect("a command of the workbench");
+    program.mut_subcommand("golden", |own| {
+        GOLDEN.iter().fold(own, |own, (name, _)| {
+            let known = golden.find_subcommand(name).expect("a command of the workbench");
+            own.mut_subcommand(name, |_| full(known))
+        })
+    })
+}
+
 /// A command on a file. All words after the file are the workbench's.
 fn of_workbench((name, does): (&'static str, &'static str)) -> Command {
     let words = Arg::new(WORDS).value_name("FILE").num_args(1..).trailing_var_arg(true).required(true);
@@ -220,10 +254,10 @@ pub fn only_scene(command: &[String], options: &[OsString]) -> Option<String> {
     Some(taken(&mut options.to_vec(), "--scene").ok().flatten().unwrap_or_default())
 }
 
-/// The value of an option, which is taken out of the words.
+/// The value of an option, which is taken out of the words; where it is there twice, the last one counts.
 fn taken(words: &mut Vec<OsString>, option: &str) -> Result<Option<String>, Error> {
     let with_value = format!("{option}=");
-    let Some(place) = words.iter().position(|word| word == option || word.to_string_lossy().starts_with(&with_value))
+    let Some(place) = words.iter().rposition(|word| word == option || word.to_string_lossy().starts_with(&with_value))
     else {
         return Ok(None);
     };

@@ -10,6 +10,7 @@ mod new;
 mod served;
 mod watch;
 
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -17,7 +18,8 @@ use std::process::ExitCode;
 use arguments::{Asked, Call, Own};
 use bg_loaded::BackEnd;
 use bg_workbench::Program;
-use bg_workbench::files::console;
+use bg_workbench::command::{config, manual};
+use bg_workbench::files::{FileError, console};
 use bond_graph::maker::{self, Source};
 use bond_graph::{faults, file, serve};
 use served::Served;
@@ -28,12 +30,24 @@ fn main() -> ExitCode {
         Ok(Asked::Own(Own::Fmt { files, check })) => fmt::fmt(&files, check),
         Ok(Asked::Own(Own::Watch { served, file, options })) => watch::watch(&file, &options, &served),
         Ok(Asked::Own(Own::Serve { served, page })) => serve_page(page, &served).unwrap_or_else(refused),
+        Ok(Asked::Own(Own::Completions { shell })) => {
+            said(console::print(&manual::completions(arguments::whole(), shell)))
+        }
+        Ok(Asked::Own(Own::Man { out: None })) => said(console::print(&manual::page(arguments::whole()))),
+        Ok(Asked::Own(Own::Man { out: Some(folder) })) => {
+            said(manual::pages(arguments::whole(), &folder).and_then(|written| console::print(&format!("{written}\n"))))
+        }
         Ok(Asked::Own(Own::New { name })) => new::new(&name).map_or_else(refused, |()| ExitCode::SUCCESS),
         Ok(Asked::Program(call)) => program(call),
         Err(fault) if fault.use_stderr() => refused(console::in_one_line(&fault.render().to_string())),
         // Help and version.
-        Err(help) => console::printed(help.print()).map_or_else(refused, |()| ExitCode::SUCCESS),
+        Err(help) => said(console::printed(help.print())),
     }
+}
+
+/// What became of saying something.
+fn said(outcome: Result<(), FileError>) -> ExitCode {
+    outcome.map_or_else(refused, |()| ExitCode::SUCCESS)
 }
 
 /// Input that cannot be used.
@@ -58,7 +72,11 @@ fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -
         Ok(read) => read,
         Err(fault) => return refused(fault),
     };
-    let wanted = file::Wanted { scene: arguments::only_scene(&command, &options), most };
+    let told: Vec<OsString> = match config::words(options.iter().cloned()) {
+        Ok(words) => words.all().collect(),
+        Err(fault) => return refused(fault),
+    };
+    let wanted = file::Wanted { scene: arguments::only_scene(&command, &told), most };
     let graphs = match file::graphs(&read, &wanted) {
         Ok(graphs) => graphs,
         Err(faults) => {

@@ -10,6 +10,7 @@ use super::routine::parsed;
 use crate::graph::{Input, Parameter};
 use crate::source::ast::Name;
 use crate::source::names::{self, INPUTS, PARAMETERS};
+use crate::source::visibility::Visibility;
 use crate::tables;
 
 /// What the generated structs are made from.
@@ -17,7 +18,7 @@ pub(super) struct Given<'a> {
     pub(super) name: &'a Name,
     /// Whether an editor finds the fields at the declarations of what they are.
     pub(super) stands_for_graph: bool,
-    pub(super) visibility: &'a syn::Visibility,
+    pub(super) visibility: &'a Visibility,
     pub(super) parameters: &'a [Parameter],
     pub(super) inputs: &'a [Input],
 }

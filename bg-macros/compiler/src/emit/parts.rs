@@ -12,6 +12,7 @@ use quote::{format_ident, quote};
 
 use super::items::identifier;
 use crate::source::ast::{Foreign, Part, PartPath, Source, used_parts};
+use crate::source::visibility::Visibility;
 
 /// The macros of all parts that can be used elsewhere.
 #[must_use]
@@ -29,9 +30,9 @@ pub fn question(part: &PartPath, call: &TokenStream) -> TokenStream {
 fn exported(source: &Source, part: &Part) -> Option<TokenStream> {
     let visibility = &part.visibility;
     let export = match visibility {
-        syn::Visibility::Inherited => return None,
-        syn::Visibility::Public(_) => Some(quote!(#[macro_export])),
-        syn::Visibility::Restricted(_) => None,
+        Visibility::Private => return None,
+        Visibility::Public(_) => Some(quote!(#[macro_export])),
+        Visibility::Within(..) => None,
     };
     let (name, carrier, docs) = (identifier(&part.name.text), carrier(part), &part.docs);
     let answer = answer(source, part);

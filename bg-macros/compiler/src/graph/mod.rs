@@ -16,6 +16,7 @@ use bg_units::Unit;
 
 use crate::graph::units::{Dimension, Domain};
 use crate::source::ast::Name;
+use crate::source::visibility::Visibility;
 
 pub use crate::source::ast::{Axis, BinaryOperator, Comparison, Direction, ElementKind, Role, TrackKind};
 pub use crate::source::clause::{Allowed, Clause};
@@ -35,7 +36,7 @@ pub struct BondGraph {
     /// Documentation comment.
     pub docs: String,
     /// Visibility of the generated items.
-    pub visibility: syn::Visibility,
+    pub visibility: Visibility,
     /// Parameters in the order of declaration.
     pub parameters: Vec<Parameter>,
     /// Inputs in the order of declaration.

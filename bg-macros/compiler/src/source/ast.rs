@@ -9,6 +9,7 @@ use proc_macro2::Span;
 
 use crate::source::clause::Clause;
 use crate::source::drawing::Drawing;
+use crate::source::visibility::Visibility;
 
 pub use crate::source::ast_part::{
     Argument, For, Foreign, Part, PartPath, Port, Start, StartKind, Use, Written, used_parts,
@@ -39,7 +40,7 @@ pub struct Graph {
     /// Documentation comment, lines joined by `\n`, each without its leading blank.
     pub docs: String,
     /// Visibility of the generated items.
-    pub visibility: syn::Visibility,
+    pub visibility: Visibility,
     /// The generated type's name.
     pub name: Name,
     /// The statements in their order.

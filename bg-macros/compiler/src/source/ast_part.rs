@@ -7,6 +7,7 @@ use std::fmt::{Debug, Formatter, Result};
 use proc_macro2::{Span, TokenStream};
 
 use crate::source::ast::{Expression, Item, Junction, Name, Source};
+use crate::source::visibility::Visibility;
 
 /// One `part NAME { ... }`: a piece of machine.
 #[derive(Clone, Debug)]
@@ -14,7 +15,7 @@ pub struct Part {
     /// Documentation comment.
     pub docs: String,
     /// From where it can be used.
-    pub visibility: syn::Visibility,
+    pub visibility: Visibility,
     /// Its name (no dots).
     pub name: Name,
     /// The statements in their order.

@@ -14,5 +14,6 @@ pub mod print;
 mod print_part;
 pub mod scene;
 pub mod syntax;
+pub mod visibility;
 pub(crate) mod walk;
 pub(crate) mod words;

@@ -35,7 +35,7 @@ impl Display for Source {
 impl Display for Graph {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         documentation(f, &self.docs)?;
-        write!(f, "{}graph {} ", visibility(&self.visibility), self.name)?;
+        write!(f, "{}graph {} ", self.visibility.text(), self.name)?;
         statements(f, &self.items)
     }
 }
@@ -63,17 +63,6 @@ const fn section(item: &Item) -> Option<u8> {
         Item::Close(_) => Some(5),
         _ => None,
     }
-}
-
-/// The words in front of `graph`.
-pub(super) fn visibility(visibility: &syn::Visibility) -> String {
-    let syn::Visibility::Restricted(restricted) = visibility else {
-        return if matches!(visibility, syn::Visibility::Public(_)) { "pub ".into() } else { String::new() };
-    };
-    let segments: Vec<String> = restricted.path.segments.iter().map(|segment| segment.ident.to_string()).collect();
-    let path = segments.join("::");
-    let root = if restricted.path.leading_colon.is_some() { "::" } else { "" };
-    if restricted.in_token.is_some() { format!("pub(in {root}{path}) ") } else { format!("pub({path}) ") }
 }
 
 /// Documentation as lines of `///`.

@@ -3,13 +3,13 @@
 use std::fmt::{Display, Formatter, Result};
 
 use crate::source::ast::{Argument, For, Part, Port, Start, Use};
-use crate::source::print::{block, documentation, statements, visibility};
+use crate::source::print::{block, documentation, statements};
 use crate::source::words::{STARTS, word_of};
 
 impl Display for Part {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         documentation(f, &self.docs)?;
-        write!(f, "{}part {} ", visibility(&self.visibility), self.name)?;
+        write!(f, "{}part {} ", self.visibility.text(), self.name)?;
         statements(f, &self.items)
     }
 }

@@ -214,6 +214,7 @@ fn part_name(item: &Item) -> Option<&Name> {
 mod tests {
     use super::*;
     use crate::source::syntax;
+    use crate::source::visibility::Visibility;
 
     const GRAPH: &str = "/// The whole.
         pub graph G {
@@ -242,7 +243,7 @@ mod tests {
         let docs: Vec<_> = variants.iter().map(|variant| variant.graph.docs.trim()).collect();
         assert_eq!(docs, ["The whole.", "The whole.", "Another."]);
         assert_eq!(variants.iter().map(|variant| outputs(&variant.graph)).collect::<Vec<_>>(), [1, 1, 2]);
-        assert!(variants.iter().all(|variant| matches!(variant.graph.visibility, syn::Visibility::Public(_))));
+        assert!(variants.iter().all(|variant| matches!(variant.graph.visibility, Visibility::Public(_))));
     }
 
     #[test]

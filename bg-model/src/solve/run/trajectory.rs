@@ -12,7 +12,7 @@ use crate::model::mechanism::Mechanism;
 use crate::solve::failure::Cause;
 use crate::solve::finish::Ended;
 use crate::solve::integrator::Change;
-use crate::solve::simulation::{Recording, Samples};
+use crate::solve::simulation::{Column, Recording, Samples};
 use crate::solve::statistics::Statistics;
 
 /// A run: its samples (it can be used as its [`Recording`]) and what it took.
@@ -130,27 +130,40 @@ impl Recording {
     /// # Errors
     /// A failure of `writer`.
     pub fn write_csv(&self, writer: impl Write) -> io::Result<()> {
-        self.write_columns(self.columns.iter().map(|column| column.name.as_str()), writer)
+        write_table("t", self.columns.iter().map(|column| (column.name.as_str(), column)), &self.times, writer)
     }
 
-    /// Writes a CSV file: `t` and the columns called `names`, in this order.
+    /// Writes the same with the unit of each column in its head, as in `t [s],speed [rpm]`. A pure number has none.
     ///
     /// # Errors
-    /// A failure of `writer`; a name that no column has.
-    pub fn write_columns<'n>(&self, names: impl IntoIterator<Item = &'n str>, writer: impl Write) -> io::Result<()> {
-        let column = |name: &'n str| Ok((name, self.values(name).map_err(io::Error::other)?));
-        let columns = names.into_iter().map(column).collect::<io::Result<Vec<_>>>()?;
-        let mut csv = csv::Writer::from_writer(writer);
-        csv.write_record(std::iter::once("t").chain(columns.iter().map(|(name, _)| *name)))?;
-        for (index, t) in self.times.iter().enumerate() {
-            csv.write_field(shortest(*t))?;
-            for (_, values) in &columns {
-                csv.write_field(shortest(values[index]))?;
-            }
-            csv.write_record(None::<&[u8]>)?;
-        }
-        csv.flush()
+    /// A failure of `writer`.
+    pub fn write_csv_with_units(&self, writer: impl Write) -> io::Result<()> {
+        let head = |column: &Column| match column.unit.as_str() {
+            "" => column.name.clone(),
+            unit => format!("{} [{unit}]", column.name),
+        };
+        write_table("t [s]", self.columns.iter().map(|column| (head(column), column)), &self.times, writer)
     }
+}
+
+/// Writes the times under the head `t` and the columns under theirs.
+fn write_table<'c, H: AsRef<str>>(
+    t: &str,
+    columns: impl Iterator<Item = (H, &'c Column)>,
+    times: &[f64],
+    writer: impl Write,
+) -> io::Result<()> {
+    let (heads, columns): (Vec<H>, Vec<&Column>) = columns.unzip();
+    let mut csv = csv::Writer::from_writer(writer);
+    csv.write_record(std::iter::once(t).chain(heads.iter().map(AsRef::as_ref)))?;
+    for (index, t) in times.iter().enumerate() {
+        csv.write_field(shortest(*t))?;
+        for column in &columns {
+            csv.write_field(shortest(column.values[index]))?;
+        }
+        csv.write_record(None::<&[u8]>)?;
+    }
+    csv.flush()
 }
 
 /// The shortest decimal form that reads back to the same bits, with an exponent where that is shorter.

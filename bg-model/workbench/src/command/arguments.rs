@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use bg_model::integrator::Integrator;
 use bg_model::run::Request;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use super::identify::IdentifyArguments;
 use super::methods::integrator;
@@ -14,6 +15,7 @@ use crate::ask::request::Integration;
 use crate::ask::request::T_END;
 use crate::show::picture::Level;
 use crate::show::tables::Part;
+use crate::show::trajectory::Form;
 use crate::studies::golden::FOLDER;
 
 #[derive(Debug, Parser)]
@@ -23,6 +25,15 @@ pub struct Cli {
     pub command: Option<Command>,
     #[command(flatten)]
     pub run: RunArguments,
+
+    /// Say nothing but faults and what is asked for: no summary beside files that are written, no progress
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+
+    /// Take options from a TOML file: `t-end = 2`, `output = ["a", "b"]`, a table [set] of parameters. Those on the
+    /// command line come after them
+    #[arg(long, global = true, value_name = "FILE.toml")]
+    pub config: Option<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -64,6 +75,18 @@ pub enum Command {
         /// Print them as a file for --params
         #[arg(long)]
         toml: bool,
+    },
+    /// Print what makes a shell complete commands, options, scenes and cases
+    Completions {
+        /// The shell
+        #[arg(value_name = "SHELL")]
+        shell: Shell,
+    },
+    /// Print the manual page, or write those of all commands
+    Man {
+        /// Folder for a page of each command
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
 }
 
@@ -207,18 +230,55 @@ pub struct RunArguments {
     #[arg(long, value_name = "FILE.json")]
     pub save_state: Option<PathBuf>,
 
-    /// Write the trajectory here instead of trajectory.csv in --out. Replaces a file that is there; later runs leave it
-    #[arg(long, value_name = "FILE")]
-    pub csv: Option<PathBuf>,
+    #[command(flatten)]
+    pub trajectory: TrajectoryArguments,
 
     /// Folder for figures, index.html, summary.txt, summary.json and trajectory.csv; made if it is not there. They
     /// replace the files of the run before as soon as all are written; other files stay
     #[arg(long, value_name = "DIR", default_value = "out")]
     pub out: PathBuf,
 
-    /// Draw no figures and no page; together with --csv nothing is written but that file
+    /// Draw no figures and no page; together with --csv, --parquet or --npz nothing is written but these files
     #[arg(long)]
     pub no_figures: bool,
+
+    /// Print the summary as JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Where the trajectory goes, and as what.
+#[derive(Clone, Debug, Args)]
+pub struct TrajectoryArguments {
+    /// Write the trajectory here instead of trajectory.csv in --out. Replaces a file that is there; later runs leave it.
+    /// `-` is standard output; the summary goes to standard error then
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<PathBuf>,
+
+    /// Give the columns of CSV files their units, as in `speed [rpm]`
+    #[arg(long)]
+    pub units: bool,
+
+    /// The same as Parquet, with the columns' units in its metadata
+    #[arg(long, value_name = "FILE")]
+    pub parquet: Option<PathBuf>,
+
+    /// The same as arrays for numpy.load, by the columns' names
+    #[arg(long, value_name = "FILE")]
+    pub npz: Option<PathBuf>,
+}
+
+impl TrajectoryArguments {
+    /// What CSV files are.
+    pub const fn form_of_csv(&self) -> Form {
+        if self.units { Form::CsvWithUnits } else { Form::Csv }
+    }
+
+    /// The files that are asked for.
+    pub fn tables(&self) -> Vec<(Form, PathBuf)> {
+        let asked = [(self.form_of_csv(), &self.csv), (Form::Parquet, &self.parquet), (Form::Npz, &self.npz)];
+        asked.into_iter().filter_map(|(form, path)| Some((form, path.clone()?))).collect()
+    }
 }
 
 /// A report takes what a run takes; its page is in place of `index.html` and the figures' files.

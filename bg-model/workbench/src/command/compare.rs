@@ -11,6 +11,7 @@ use super::run::{follow, machine, request};
 use super::{InputError, ended, say};
 use crate::ask::inputs;
 use crate::ask::parameters::{self, Chosen};
+use crate::ask::quantity::Conversion;
 use crate::program::Program;
 use crate::run::compare::text;
 use crate::run::running::Outcome;
@@ -53,10 +54,17 @@ fn side(
     }
     let file = if path.is_dir() { path.join("trajectory.csv") } else { path.to_owned() };
     let mut samples = read_file(&file)?;
-    // A file has no units; those of the model's outputs are known by name.
+    // Those of the model's outputs are known by name; a file may have other units of them, or none.
     for column in &mut samples.columns {
         let mut outputs = program.models.scenes.iter().flat_map(|scene| scene.description.outputs);
         if let Some(output) = outputs.find(|output| output.name == column.name) {
+            if !column.unit.is_empty() {
+                let unit = Conversion::between(&column.unit, output.unit).map_err(|fault| InputError::Unit {
+                    place: format!("{}, column `{}`", file.display(), column.name),
+                    fault,
+                })?;
+                column.values.iter_mut().for_each(|value| *value = unit.of(*value));
+            }
             output.unit.clone_into(&mut column.unit);
         }
     }

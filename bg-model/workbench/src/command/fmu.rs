@@ -13,10 +13,10 @@ use bg_model::description::Description;
 use thiserror::Error;
 
 use super::arguments::FmuArguments;
-use super::{InputError, say};
+use super::{InputError, ended};
 use crate::ask::maker::Prebuilt;
 use crate::ask::parameters::Values;
-use crate::files::whole;
+use crate::files::{console, whole};
 use crate::program::Program;
 
 /// A library that there is none of.
@@ -80,7 +80,7 @@ pub(super) fn pack(program: &Program, arguments: &FmuArguments) -> Result<ExitCo
     let unit = archive(&model, &packing, &bytes, resources);
     whole::write(&path, |file| file.write_all(&unit?))?;
     let (name, version, platform) = (scene.description.name, version.name(), bg_fmi::archive::platform(version));
-    Ok(say(&format!("{}: {name} for FMI {version}, {platform}\n", path.display())))
+    Ok(ended(console::tell(&format!("{}: {name} for FMI {version}, {platform}\n", path.display())).err()))
 }
 
 /// A name of letters, digits and underscores, for a library in a unit.

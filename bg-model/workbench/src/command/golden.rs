@@ -25,7 +25,7 @@ pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode
         return Ok(ended([format!("the run failed, nothing is recorded: {failure}")]));
     }
     let written = place.write(&scene.name, (&model.input, &named), integration, &chosen.values, &run);
-    Ok(ended(written.and_then(|line| console::print(&format!("{line}\n"))).err()))
+    Ok(ended(written.and_then(|line| console::tell(&format!("{line}\n"))).err()))
 }
 
 pub fn check(program: &Program, arguments: &CheckArguments) -> Result<ExitCode, InputError> {
@@ -33,7 +33,7 @@ pub fn check(program: &Program, arguments: &CheckArguments) -> Result<ExitCode, 
     for prepared in prepare(program, &arguments.out, &arguments.names)? {
         match check_one(program, &prepared) {
             Ok(agreement) => {
-                faults.extend(console::print(&format!("{agreement}\n")).err().map(|fault| fault.to_string()))
+                faults.extend(console::tell(&format!("{agreement}\n")).err().map(|fault| fault.to_string()))
             }
             Err(deviating) => faults.extend(deviating.lines()),
         }

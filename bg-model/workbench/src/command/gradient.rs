@@ -97,7 +97,7 @@ pub fn gradient(program: &Program, arguments: &SensitivityArguments) -> Result<E
     let place = written
         .as_ref()
         .map_or_else(|_| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::print(&format!("{told}\nwritten: {place}\n"));
+    let printed = console::tell(&format!("{told}\nwritten: {place}\n"));
     Ok(ended(written.err().map(OutputError::from).into_iter().chain(printed.err().map(OutputError::from))))
 }
 

@@ -98,7 +98,7 @@ pub fn identify(program: &Program, arguments: &IdentifyArguments) -> Result<Exit
     let (written, faults) = write(folder, &told, &found, &data, scene);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::print(&format!("{told}\nwritten: {written}\n"));
+    let printed = console::tell(&format!("{told}\nwritten: {written}\n"));
     let unfinished = if !found.has_converged {
         Some("the fit did not converge; start nearer with --set, or fit fewer".to_owned())
     } else if !found.leaves_noise() {

@@ -42,7 +42,7 @@ pub fn linearize(program: &Program, arguments: &LinearizeArguments) -> Result<Ex
     let (written, faults) = write(folder, &space, &text);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::print(&format!("{text}\nwritten: {written}\n"));
+    let printed = console::tell(&format!("{text}\nwritten: {written}\n"));
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
 }
 

@@ -8,12 +8,14 @@ mod arguments;
 mod asked;
 pub mod calls;
 mod compare;
+pub mod config;
 mod fmu;
 mod golden;
 mod gradient;
 mod graph;
 mod identify;
 mod linearize;
+pub mod manual;
 mod methods;
 mod precision;
 mod progress;
@@ -32,12 +34,14 @@ use bg_model::run::RunError;
 use bg_model::sensitivity::SensitivityError;
 use bg_model::simulation::MissingColumn;
 use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::error::ErrorKind;
 use clap::{Arg, CommandFactory, FromArgMatches};
 use thiserror::Error;
 
 use crate::ask::inputs::InputSettingError;
 use crate::ask::machine::Absent;
 use crate::ask::parameters::{self, SettingError};
+use crate::ask::quantity::QuantityError;
 use crate::ask::request::RequestError;
 use crate::ask::scenes::Fixed;
 use crate::files::{FileError, console};
@@ -55,6 +59,7 @@ use crate::studies::precision::measure::MeasureError;
 use crate::studies::sweep::SweepError;
 use arguments::{Cli, Command, GoldenCommand};
 use bg_analysis::linear::LinearError;
+use config::Words;
 use fmu::LibraryError;
 
 /// Input that cannot be used.
@@ -70,6 +75,8 @@ enum InputError {
     Request(#[from] RequestError),
     #[error("{place}: {fault}")]
     Fixed { place: String, fault: Fixed },
+    #[error("{place}: {fault}")]
+    Unit { place: String, fault: QuantityError },
     #[error("{0}: neither a scene nor a run; the command `scene` lists the scenes")]
     NothingToCompare(String),
     #[error(transparent)]
@@ -142,15 +149,40 @@ impl Program {
 
 /// Does what the arguments ask for and gives the exit code.
 fn main(program: &Program, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = command(program).try_get_matches_from(arguments).and_then(|matches| Cli::from_arg_matches(&matches));
+    let words = match config::words(arguments) {
+        Ok(words) => words,
+        Err(fault) => return refuse(&fault),
+    };
+    let cli = command(program);
+    // Of two values the one on the command line counts.
+    let cli = if words.path.is_some() { cli.args_override_self(true) } else { cli };
+    if let Some(fault) = fault_of_file(cli.clone(), &words) {
+        return refuse(&fault);
+    }
+    let cli = cli.try_get_matches_from(words.all()).and_then(|matches| Cli::from_arg_matches(&matches));
+    console::set_quiet(cli.as_ref().is_ok_and(|cli| cli.quiet));
     let outcome = match cli {
         Err(fault) if fault.use_stderr() => return refuse(&console::in_one_line(&fault.render().to_string())),
         // Help and version.
         Err(help) => Ok(ended(console::printed(help.print()).err())),
-        Ok(Cli { command: None, run }) => run::simulate(program, &run, None),
+        Ok(Cli { command: None, run, .. }) => run::simulate(program, &run, None),
         Ok(Cli { command: Some(command), .. }) => obey(program, command),
     };
     outcome.unwrap_or_else(|fault| refuse(&fault))
+}
+
+/// What is wrong with the options of a file, whatever stands on the command line.
+fn fault_of_file(cli: clap::Command, words: &Words) -> Option<String> {
+    let path = words.path.as_ref()?;
+    let fault = cli.try_get_matches_from(words.command.iter().chain(&words.of_file)).err()?;
+    // What a command needs beside its options, and what two options have against each other, is told of the whole.
+    let is_of_one = matches!(
+        fault.kind(),
+        ErrorKind::UnknownArgument | ErrorKind::InvalidValue | ErrorKind::ValueValidation | ErrorKind::TooManyValues
+    );
+    is_of_one.then(|| {
+        format!("{} {}: {}", config::OPTION, path.display(), console::in_one_line(&fault.render().to_string()))
+    })
 }
 
 fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
@@ -173,7 +205,19 @@ fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
         Command::Fmu(arguments) => fmu::pack(program, &arguments),
         Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&program.models.defaults()))),
         Command::Parameters { toml: false } => Ok(say(&parameters::table(program.models.defaults().table()))),
+        Command::Completions { shell } => Ok(say(&manual::completions(self::command(program), shell))),
+        Command::Man { out: None } => Ok(say(&manual::page(self::command(program)))),
+        Command::Man { out: Some(folder) } => {
+            let written = manual::pages(self::command(program), &folder)?;
+            Ok(ended(console::tell(&format!("{written}\n")).err()))
+        }
     }
+}
+
+/// The commands, as far as they do not depend on a program.
+#[must_use]
+pub fn commands() -> clap::Command {
+    Cli::command()
 }
 
 /// The command line with the program's names, and its parameters in the help.

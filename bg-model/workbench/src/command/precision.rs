@@ -39,7 +39,7 @@ pub fn measure_all(program: &Program, arguments: &PrecisionArguments) -> Result<
         Ok(count) => (format!("{count} files in {}", arguments.out.display()), None),
         Err(fault) => ("nothing".to_owned(), Some(fault)),
     };
-    let printed = console::print(&format!("{}\nwritten: {written}\n", report::table(&entries)));
+    let printed = console::tell(&format!("{}\nwritten: {written}\n", report::table(&entries)));
     Ok(ended(fault.into_iter().chain(printed.err().map(OutputError::from))))
 }
 

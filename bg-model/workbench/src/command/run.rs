@@ -23,7 +23,7 @@ use crate::program::Program;
 use crate::run::recipe::Recipe;
 use crate::run::running::{self, Begin, Outcome};
 use crate::run::summary::Summary;
-use crate::show::output::{Claimed, OutputError, Places, Table};
+use crate::show::output::{Claimed, OutputError, Places};
 use crate::show::page::film::Film;
 use crate::show::page::{Parameter, Views};
 use crate::show::shown::{Exhibits, PageFiles};
@@ -43,7 +43,9 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
         Some(look) => Some(look.files.clone()),
         None => figures.is_some().then(PageFiles::of_run),
     };
-    let places = Places::new(&arguments.out, arguments.csv.as_deref(), page, figures.unwrap_or_default());
+    let (tables, own) = (arguments.trajectory.tables(), arguments.trajectory.form_of_csv());
+    let places = Places::new(&arguments.out, tables, own, page, figures.unwrap_or_default());
+    let spoken = Spoken { as_json: arguments.json, is_aside: places.has_standard_output() };
     let live = match look.and_then(|look| look.module.as_ref()) {
         Some(module) => Some(Live {
             module: module.wasm(scene.index)?,
@@ -76,7 +78,7 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
         views: &views,
         live: live.as_ref(),
     };
-    let mut faults: Vec<String> = match report(program, outcome, &rows, claimed, (inputs, recipe), &exhibits) {
+    let mut faults: Vec<String> = match report(program, outcome, &rows, claimed, (inputs, recipe), &exhibits, &spoken) {
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
     };
@@ -143,6 +145,14 @@ fn keep(run: &mut Recording, outputs: &[(usize, &OutputInfo)]) {
     run.columns = outputs.iter().filter_map(|(index, _)| columns.get_mut(*index)?.take()).collect();
 }
 
+/// How the summary is given.
+struct Spoken {
+    /// As JSON, not as text.
+    as_json: bool,
+    /// On standard error, since the trajectory has standard output.
+    is_aside: bool,
+}
+
 /// Writes the files and prints the summary; gives what failed.
 fn report(
     program: &Program,
@@ -151,6 +161,7 @@ fn report(
     claimed: Claimed,
     (inputs, recipe): (Vec<Named>, Recipe),
     exhibits: &Exhibits<'_>,
+    spoken: &Spoken,
 ) -> Result<Vec<OutputError>, MissingColumn> {
     let Outcome { run, failure } = outcome;
     let extras = &program.extras;
@@ -160,12 +171,24 @@ fn report(
     summary.changed_parameters =
         changed(exhibits.parameters.iter().map(|parameter| (&parameter.info, parameter.value)));
     summary.inputs = inputs;
-    let columns = extras.columns(&run);
-    let table = Table { samples: &run.at(rows), columns: columns.as_deref() };
+    let mut rows = run.at(rows);
+    if let Some(names) = extras.columns(&run) {
+        let mut columns = std::mem::take(&mut rows.columns);
+        let mut named = |name: &String| {
+            let place = columns.iter().position(|column| column.name == *name)?;
+            Some(columns.swap_remove(place))
+        };
+        rows.columns = names.iter().filter_map(&mut named).collect();
+    }
     let texts = extras.page(exhibits.description);
-    let mut written = claimed.write(&table, &run, &texts, exhibits, &mut summary);
-    let page = written.page.as_ref().map_or_else(String::new, |page| format!("; open {page} there"));
-    let printed = console::print(&format!("{summary}\nwritten: {written}{page}\n"));
+    let mut written = claimed.write(&rows, &run, &texts, exhibits, &mut summary);
+    let text = if spoken.as_json {
+        summary.json()
+    } else {
+        let page = written.page.as_ref().map_or_else(String::new, |page| format!("; open {page} there"));
+        format!("{summary}\nwritten: {written}{page}\n")
+    };
+    let printed = if spoken.is_aside { console::tell_aside(&text) } else { console::tell(&text) };
     written.faults.extend(printed.err().map(OutputError::from));
     Ok(written.faults)
 }

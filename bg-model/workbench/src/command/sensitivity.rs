@@ -92,7 +92,7 @@ pub fn sensitivity(program: &Program, arguments: &SensitivityArguments) -> Resul
     let (written, faults) = write(folder, &scene.name, &found, (&all, &table), &question);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::print(&format!("{told}\nwritten: {written}\n"));
+    let printed = console::tell(&format!("{told}\nwritten: {written}\n"));
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
 }
 

@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 use super::progress::bar;
 use super::{InputError, ended, say};
 use crate::ask::parameters::number;
-use crate::files::whole;
+use crate::files::{console, whole};
 use crate::program::Program;
 use crate::studies::sweep::folder::{Folder, Kind};
 use crate::studies::sweep::plan::Plan;
@@ -82,7 +82,7 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
     });
     bar.finish_and_clear();
     match outcome {
-        Ok(outcome) => Ok(say(&sentence(&outcome, &folder, plan.integration.step))),
+        Ok(outcome) => Ok(ended(console::tell(&sentence(&outcome, &folder, plan.integration.step)).err())),
         // What could be made is there.
         Err(fault @ SweepError::File(_)) => Ok(ended([fault])),
         Err(fault) => Err(fault.into()),

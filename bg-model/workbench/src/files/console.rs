@@ -2,8 +2,42 @@
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write, stderr, stdout};
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::FileError;
+
+/// What stands for standard output where a file can be given.
+pub const STANDARD: &str = "-";
+
+/// Whether the program says nothing but faults and what is asked for.
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on the program says faults and what is asked for, and, unless it is to be quiet, also what it does beside.
+pub fn set_quiet(is_quiet: bool) {
+    IS_QUIET.store(is_quiet, Relaxed);
+}
+
+/// Whether it is to be quiet.
+#[must_use]
+pub fn is_quiet() -> bool {
+    IS_QUIET.load(Relaxed)
+}
+
+/// Prints `text`, which tells of files that are written, to standard output, unless the program is to be quiet.
+///
+/// # Errors
+/// As [`print()`].
+pub fn tell(text: &str) -> Result<(), FileError> {
+    if is_quiet() { Ok(()) } else { print(text) }
+}
+
+/// The same on standard error, where standard output has a result.
+///
+/// # Errors
+/// As [`print()`].
+pub fn tell_aside(text: &str) -> Result<(), FileError> {
+    if is_quiet() { Ok(()) } else { unless_closed(stderr().write_all(text.as_bytes())).map_err(FileError::Standard) }
+}
 
 /// Prints `text` to standard output. A reader that has gone away, as `head` does, is no fault.
 ///

@@ -7,6 +7,7 @@
 pub mod console;
 mod folder;
 pub(crate) mod head;
+pub mod parquet;
 pub mod table;
 pub mod whole;
 

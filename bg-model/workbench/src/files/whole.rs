@@ -11,17 +11,18 @@ use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
 
 use super::FileError;
-use super::console::unless_closed;
+use super::console::{STANDARD, unless_closed};
 
 /// Names of what the program has open already. What is behind them must not be replaced, be it a regular file.
 const OPEN: [&str; 4] = ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc"];
 
-/// Writes the file at `path` with what `fill` writes.
+/// Writes the file at `path` with what `fill` writes; [`STANDARD`] is standard output.
 ///
 /// # Errors
 /// [`FileError::Write`]; the file is then as it was before.
 pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), FileError> {
     let outcome = target(path).and_then(|target| match target {
+        Target::Standard => unless_closed(filled(io::stdout().lock(), fill).and_then(|mut file| file.flush())),
         Target::Through => {
             let file = OpenOptions::new().write(true).truncate(true).open(path)?;
             unless_closed(filled(file, fill).map(|_| ()))
@@ -43,7 +44,7 @@ pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
 /// [`FileError::Write`].
 pub fn probe(path: &Path) -> Result<(), FileError> {
     let outcome = target(path).and_then(|target| match target {
-        Target::Through => Ok(()),
+        Target::Standard | Target::Through => Ok(()),
         Target::Aside(real) => {
             // A file that is marked as not to be written is not to be replaced either.
             if real.exists() {
@@ -63,6 +64,8 @@ pub(super) fn filled<W: Write>(file: W, fill: impl FnOnce(&mut dyn Write) -> io:
 }
 
 enum Target {
+    /// Standard output, which is [`STANDARD`].
+    Standard,
     /// What has no content to lose.
     Through,
     /// The regular file that is replaced, behind all symbolic links.
@@ -70,6 +73,9 @@ enum Target {
 }
 
 fn target(path: &Path) -> io::Result<Target> {
+    if path.as_os_str() == STANDARD {
+        return Ok(Target::Standard);
+    }
     match fs::metadata(path) {
         Ok(present) if present.is_dir() => Err(ErrorKind::IsADirectory.into()),
         Ok(present) if !present.is_file() || OPEN.iter().any(|open| path.starts_with(open)) => Ok(Target::Through),

@@ -3,10 +3,9 @@
 //! In: two recordings. Out: for each column that both have the largest difference, and when. Angles are compared
 //! without whole turns. Where one has samples that the other lacks, the instants of both count.
 
-use std::f64::consts::TAU;
-
 use bg_model::simulation::{Column, Recording};
 
+use crate::ask::quantity::turn;
 use crate::files::table::table;
 
 /// The largest difference in one column.
@@ -33,7 +32,7 @@ pub fn deviations(a: &Recording, b: &Recording) -> Vec<Deviation> {
 }
 
 fn deviation(times: &[f64], column: &Column, theirs: &[f64]) -> Deviation {
-    let turn = if column.unit == "rad" { TAU } else { f64::INFINITY };
+    let turn = turn(&column.unit);
     let differences = column.values.iter().zip(theirs).map(|(ours, theirs)| difference(*ours, *theirs, turn));
     let (largest, time) = differences.zip(times).fold((0.0, 0.0), |most, (difference, time)| {
         // A NaN is the largest of all.
@@ -89,6 +88,8 @@ pub fn text(names: [&str; 2], a: &Recording, b: &Recording) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     fn run(columns: &[(&str, &str)], rows: &[(f64, &[f64])]) -> Recording {

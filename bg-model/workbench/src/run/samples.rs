@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use bg_model::simulation::{Column, Recording};
 use thiserror::Error;
 
-use crate::files::head::is_row;
+use crate::ask::quantity::{Conversion, QuantityError};
+use crate::files::head::{is_row, name_and_unit};
 
 /// A CSV file that is no run.
 #[derive(Debug, Error)]
@@ -22,6 +23,9 @@ pub enum SamplesError {
     /// The first column is not the time.
     #[error("the first column must be `t`")]
     NoTime,
+    /// The time is in no unit of time.
+    #[error("the time: {0}")]
+    Time(QuantityError),
     /// The first line is a row already.
     #[error("its first line has numbers; write a first line with `t` and the names of the columns")]
     NoHead,
@@ -40,7 +44,8 @@ pub struct Unreadable {
     pub source: SamplesError,
 }
 
-/// Reads a CSV file whose first column is `t`. Units are left empty.
+/// Reads a CSV file whose first column is `t`. Units are those in the heads, as in `speed [rpm]`, else left empty; the time
+/// is in s then.
 ///
 /// # Errors
 /// A file that is no CSV, has no `t`, or a field that is no number.
@@ -50,17 +55,17 @@ pub fn read(reader: impl Read) -> Result<Recording, SamplesError> {
     if is_row(&header) {
         return Err(SamplesError::NoHead);
     }
-    if header.get(0) != Some("t") {
-        return Err(SamplesError::NoTime);
-    }
-    let mut samples = Recording::new(header.iter().skip(1).map(|name| Column::new(name, "")).collect());
+    let mut heads = header.iter().map(name_and_unit);
+    let Some(("t", unit)) = heads.next() else { return Err(SamplesError::NoTime) };
+    let time = Conversion::between(unit.unwrap_or("s"), "s").map_err(SamplesError::Time)?;
+    let mut samples = Recording::new(heads.map(|(name, unit)| Column::new(name, unit.unwrap_or_default())).collect());
     for (index, record) in csv.records().enumerate() {
         let number = |field: &str| {
             // Line 1 is the header, so record 0 stands in line 2.
             field.parse::<f64>().map_err(|_| SamplesError::NotANumber { field: field.to_owned(), line: index + 2 })
         };
         let values = record?.iter().map(number).collect::<Result<Vec<_>, _>>()?;
-        samples.push(values[0], values[1..].iter().copied());
+        samples.push(time.of(values[0]), values[1..].iter().copied());
     }
     Ok(samples)
 }
@@ -91,9 +96,21 @@ mod tests {
     }
 
     #[test]
+    fn units_in_heads_are_read_back() {
+        let mut samples = Recording::new(vec![Column::new("wagon[0].x", "mm"), Column::new("ratio", "")]);
+        samples.push(0.25, [1.0, 2.0]);
+        let mut bytes = Vec::new();
+        samples.write_csv_with_units(&mut bytes).unwrap();
+        assert_eq!(String::from_utf8_lossy(&bytes), "t [s],wagon[0].x [mm],ratio\n0.25,1.0,2.0\n");
+        assert_eq!(read(&bytes[..]).unwrap(), samples);
+        assert_eq!(read("t [ms],wagon[0].x [mm],ratio\n250,1,2\n".as_bytes()).unwrap(), samples);
+    }
+
+    #[test]
     fn what_is_no_run_is_said() {
         let fault = |text: &str| read(text.as_bytes()).unwrap_err().to_string();
         assert_eq!(fault("x,y\n1,2\n"), "the first column must be `t`");
+        assert_eq!(fault("t [mm],y\n1,2\n"), "the time: must be in s or a unit like it, and `mm` is none");
         assert!(fault("0,1\n1,2\n").starts_with("its first line has numbers; write a first line with `t`"));
         assert_eq!(fault("t,y\n1,two\n"), "`two` in line 2 is not a number");
     }

@@ -192,6 +192,12 @@ impl Summary {
         }
     }
 
+    /// The summary as JSON.
+    #[must_use]
+    pub fn json(&self) -> String {
+        serde_json::to_string_pretty(self).expect("a summary has text keys only") + "\n"
+    }
+
     /// What the checks are.
     #[must_use]
     pub const fn heading(&self) -> &'static str {

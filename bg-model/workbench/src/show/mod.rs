@@ -11,3 +11,5 @@ pub mod picture;
 pub mod shown;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod tables;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod trajectory;

@@ -4,18 +4,18 @@
 //! lost to a directory that cannot be written. What goes wrong with one output does not keep the others back.
 
 use std::fmt;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
 use bg_model::simulation::Recording;
 
-use crate::files::{FileError, RunFolder, whole};
+use crate::files::{FileError, RunFolder, console, whole};
 use crate::run::summary::Summary;
 use crate::show::extras::Page as Texts;
 use crate::show::figures::{Figure, FigureError};
 use crate::show::shown::{Exhibits, Page, PageFiles};
+use crate::show::trajectory::Form;
 
 /// The names of the files beside the figures.
 const CSV: &str = "trajectory.csv";
@@ -25,9 +25,11 @@ const JSON: &str = "summary.json";
 /// Where the files of a run go.
 #[derive(Clone, Debug)]
 pub struct Places {
-    /// The CSV file, where it is not one of the folder's.
-    pub csv: Option<PathBuf>,
-    /// The folder of figures, page and summary; `None` where only the CSV file is wanted.
+    /// The trajectory's files that are not the folder's, each with its form; [`console::STANDARD`] is standard output.
+    pub tables: Vec<(Form, PathBuf)>,
+    /// What the trajectory in the folder is written as, where there is one.
+    pub own: Option<Form>,
+    /// The folder of figures, page and summary; `None` where only the trajectory is wanted.
     pub folder: Option<PathBuf>,
     /// The figures that are wanted.
     pub figures: Vec<Figure>,
@@ -41,8 +43,8 @@ pub enum OutputError {
     /// It does not reach its place.
     #[error(transparent)]
     File(#[from] FileError),
-    /// The CSV file has the name of another file of the run.
-    #[error("--csv {}: the run writes another file of this name; choose another", .0.display())]
+    /// A file of the trajectory has the name of another file of the run.
+    #[error("{}: the run writes another file of this name; choose another for the trajectory", .0.display())]
     Clash(PathBuf),
     /// A work-precision diagram cannot be drawn.
     #[error("diagram of {name}: {source}")]
@@ -63,22 +65,27 @@ pub enum OutputError {
 }
 
 impl Places {
-    /// The places that the command line chooses: without `csv` the trajectory goes into `folder`; without a page and
-    /// with `csv` nothing goes there.
+    /// The places that the command line chooses: without `tables` the trajectory goes into `folder` in the form `own`;
+    /// with them and without a page nothing goes there.
     #[must_use]
-    pub fn new(folder: &Path, csv: Option<&Path>, page: Option<PageFiles>, figures: Vec<Figure>) -> Self {
-        Self {
-            csv: csv.filter(|csv| *csv != folder.join(CSV)).map(Path::to_owned),
-            folder: (page.is_some() || csv.is_none()).then(|| folder.to_owned()),
-            figures,
-            page,
-        }
+    pub fn new(
+        folder: &Path,
+        tables: Vec<(Form, PathBuf)>,
+        own: Form,
+        page: Option<PageFiles>,
+        figures: Vec<Figure>,
+    ) -> Self {
+        let has_folder = page.is_some() || tables.is_empty();
+        let usual = (own, folder.join(CSV));
+        let own = (tables.is_empty() || tables.contains(&usual)).then_some(own);
+        let tables = tables.into_iter().filter(|table| *table != usual).collect();
+        Self { tables, own, folder: (has_folder || own.is_some()).then(|| folder.to_owned()), figures, page }
     }
 
     /// The names of the files that may go into the folder.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
-        let csv = self.csv.is_none().then_some(CSV);
+        let csv = self.own.map(|_| CSV);
         let names = csv.into_iter().chain([TEXT, JSON]).map(str::to_owned);
         let of_page = self.page.iter().flat_map(|PageFiles { page, figures, glb }| {
             let figures = self.figures.iter().filter(|_| *figures).map(|figure| figure.file.clone());
@@ -87,43 +94,32 @@ impl Places {
         names.chain(of_page).collect()
     }
 
-    /// Claims the folder and tries the CSV file, without changing what is there.
+    /// Whether the trajectory goes to standard output.
+    #[must_use]
+    pub fn has_standard_output(&self) -> bool {
+        self.tables.iter().any(|(_, path)| path.as_os_str() == console::STANDARD)
+    }
+
+    /// Claims the folder and tries the other files, without changing what is there.
     ///
     /// # Errors
     /// The first place that cannot be written.
     pub fn claim(&self) -> Result<Claimed, OutputError> {
         let own = |path: &Path| self.folder.as_ref().is_some_and(|folder| path.starts_with(folder));
-        if let Some(csv) = &self.csv {
-            let names = self.names();
-            let clash = |folder: &PathBuf| names.iter().any(|name| folder.join(name) == *csv);
-            if self.folder.as_ref().is_some_and(clash) {
-                return Err(OutputError::Clash(csv.clone()));
+        let names = self.names();
+        for (index, (_, table)) in self.tables.iter().enumerate() {
+            let is_twice = self.tables[..index].iter().any(|(_, other)| other == table);
+            let clash = |folder: &PathBuf| names.iter().any(|name| folder.join(name) == *table);
+            if is_twice || self.folder.as_ref().is_some_and(clash) {
+                return Err(OutputError::Clash(table.clone()));
             }
         }
         // A file below the folder can be tried when the folder is there, any other before it is made.
-        let (below, elsewhere): (Vec<_>, Vec<_>) = self.csv.iter().partition(|csv| own(csv));
-        elsewhere.into_iter().try_for_each(|csv| whole::probe(csv))?;
-        let folder = self.folder.as_ref().map(|folder| RunFolder::claim(folder, &self.names())).transpose()?;
-        below.into_iter().try_for_each(|csv| whole::probe(csv))?;
+        let (below, elsewhere): (Vec<_>, Vec<_>) = self.tables.iter().map(|(_, path)| path).partition(|path| own(path));
+        elsewhere.into_iter().try_for_each(|path| whole::probe(path))?;
+        let folder = self.folder.as_ref().map(|folder| RunFolder::claim(folder, &names)).transpose()?;
+        below.into_iter().try_for_each(|path| whole::probe(path))?;
         Ok(Claimed { places: self.clone(), folder })
-    }
-}
-
-/// What a CSV file has.
-#[derive(Clone, Copy, Debug)]
-pub struct Table<'a> {
-    /// The samples.
-    pub samples: &'a Recording,
-    /// The columns after `t`; `None` for all.
-    pub columns: Option<&'a [String]>,
-}
-
-impl Table<'_> {
-    fn write(&self, file: &mut dyn Write) -> io::Result<()> {
-        match self.columns {
-            Some(columns) => self.samples.write_columns(columns.iter().map(String::as_str), file),
-            None => self.samples.write_csv(file),
-        }
     }
 }
 
@@ -137,8 +133,8 @@ pub struct Claimed {
 /// What was written.
 #[derive(Debug, Default)]
 pub struct Written {
-    /// The CSV file, where it is not in the folder.
-    pub csv: Option<PathBuf>,
+    /// The trajectory's files that are not in the folder.
+    pub tables: Vec<PathBuf>,
     /// The folder and the number of the run's files in it.
     pub folder: Option<(PathBuf, usize)>,
     /// The page in it that shows the run.
@@ -148,25 +144,26 @@ pub struct Written {
 }
 
 impl Claimed {
-    /// Writes the CSV file from `output` and everything else from `run` and `summary`, whose list of files it fills.
+    /// Writes the trajectory, which is `output`, and everything else from `run` and `summary`, whose list of files it fills.
     /// `texts` are those of the page; `exhibits` is what it shows beside them.
     pub fn write(
         self,
-        output: &Table<'_>,
+        output: &Recording,
         run: &Recording,
         texts: &Texts,
         exhibits: &Exhibits<'_>,
         summary: &mut Summary,
     ) -> Written {
         let mut written = Written::default();
-        if let Some(csv) = &self.places.csv {
-            match whole::write(csv, |file| output.write(file)) {
-                Ok(()) => written.csv = Some(csv.clone()),
+        for (form, path) in &self.places.tables {
+            match whole::write(path, |file| form.write(output, file)) {
+                Ok(()) if path.as_os_str() == console::STANDARD => {}
+                Ok(()) => written.tables.push(path.clone()),
                 Err(fault) => written.faults.push(fault.into()),
             }
         }
         let (Some(folder), Some(path)) = (self.folder, self.places.folder) else { return written };
-        let own = self.places.csv.is_none().then_some(output);
+        let own = self.places.own.map(|form| (form, output));
         let mut figures = Vec::new();
         let has_files = self.places.page.as_ref().is_some_and(|page| page.figures);
         // A run that failed before its first sample has nothing to draw; the page has charts of the usual ones.
@@ -179,8 +176,8 @@ impl Claimed {
                 Err(source) => written.faults.push(OutputError::Figure { file: figure.file, source }),
             }
         }
-        summary.files = written.csv.iter().cloned().collect();
-        let rows = &output.samples.times;
+        summary.files = written.tables.clone();
+        let rows = &output.times;
         let page = self.places.page.as_ref().map(|files| Page { files, exhibits, texts, figures, run, rows });
         match fill(folder, &path, own, page.as_ref(), summary) {
             Ok(count) => {
@@ -193,12 +190,12 @@ impl Claimed {
     }
 }
 
-/// Writes the files of the folder at `path` and gives their number: the CSV file where there is an `output` to write,
+/// Writes the files of the folder at `path` and gives their number: the trajectory where there is an `output` to write,
 /// the page and what comes with it where there is one, and the summary.
 fn fill(
     mut folder: RunFolder,
     path: &Path,
-    output: Option<&Table<'_>>,
+    output: Option<(Form, &Recording)>,
     page: Option<&Page<'_>>,
     summary: &mut Summary,
 ) -> Result<usize, FileError> {
@@ -207,15 +204,14 @@ fn fill(
     let names = names.chain(more.iter().map(|(name, _)| name.clone()));
     summary.files.extend(names.map(|name| path.join(name)));
 
-    if let Some(output) = output {
-        folder.write(CSV, |file| output.write(file))?;
+    if let Some((form, output)) = output {
+        folder.write(CSV, |file| form.write(output, file))?;
     }
     for (name, bytes) in &more {
         folder.write(name, |file| file.write_all(bytes))?;
     }
     folder.write_text(TEXT, &summary.to_string())?;
-    let json = serde_json::to_string_pretty(summary).expect("a summary has text keys only");
-    folder.write_text(JSON, &(json + "\n"))?;
+    folder.write_text(JSON, &summary.json())?;
     if let Some(page) = page {
         folder.write_text(page.name(), &page.html(summary))?;
     }
@@ -224,9 +220,10 @@ fn fill(
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let csv = self.csv.as_ref().map(|csv| csv.display().to_string());
+        let tables: Vec<String> = self.tables.iter().map(|path| path.display().to_string()).collect();
+        let tables = (!tables.is_empty()).then(|| tables.join(", "));
         let folder = self.folder.as_ref().map(|(folder, count)| format!("{count} files in {}", folder.display()));
-        let both: Vec<String> = csv.into_iter().chain(folder).collect();
+        let both: Vec<String> = tables.into_iter().chain(folder).collect();
         f.write_str(if both.is_empty() { "nothing" } else { "" })?;
         f.write_str(&both.join(" and "))
     }
@@ -251,32 +248,36 @@ mod tests {
     fn places_follow_the_command_line() {
         let (out, csv) = (Path::new("out"), Path::new("run.csv"));
         let page = || Some(PageFiles::of_run());
-        assert_eq!(Places::new(out, None, page(), figures()).names().len(), 6);
-        let both = Places::new(out, Some(csv), page(), figures());
-        assert_eq!((both.csv.as_deref(), both.names().len()), (Some(csv), 5));
-        let alone = Places::new(out, Some(csv), None, Vec::new());
-        assert_eq!((alone.csv.as_deref(), alone.folder), (Some(csv), None));
-        assert_eq!(Places::new(out, None, None, Vec::new()).names(), [CSV, TEXT, JSON]);
+        let places = |tables: &[&Path], page, figures| {
+            let tables = tables.iter().map(|path| (Form::Csv, path.to_path_buf())).collect();
+            Places::new(out, tables, Form::Csv, page, figures)
+        };
+        let files = |places: &Places| places.tables.iter().map(|(_, path)| path.clone()).collect::<Vec<_>>();
+        assert_eq!(places(&[], page(), figures()).names().len(), 6);
+        let both = places(&[csv], page(), figures());
+        assert_eq!((files(&both), both.names().len()), (vec![csv.to_owned()], 5));
+        let alone = places(&[csv], None, Vec::new());
+        assert_eq!((files(&alone), alone.folder), (vec![csv.to_owned()], None));
+        assert_eq!(places(&[], None, Vec::new()).names(), [CSV, TEXT, JSON]);
         let report = PageFiles { page: "p.html".to_owned(), figures: false, glb: Some("p.glb".to_owned()) };
-        let report = Places::new(out, Some(csv), Some(report), figures());
+        let report = places(&[csv], Some(report), figures());
         assert_eq!(
             (report.folder.as_deref(), report.names().join(" ").as_str()),
             (Some(out), "summary.txt summary.json p.html p.glb")
         );
         // The place that the trajectory has anyway.
-        let usual = Places::new(out, Some(&out.join(CSV)), page(), figures());
-        assert_eq!((usual.csv.as_deref(), usual.names().len()), (None, 6));
+        let usual = places(&[&out.join(CSV)], page(), figures());
+        assert_eq!((files(&usual), usual.names().len()), (Vec::new(), 6));
+        let more = places(&[&out.join(CSV), csv], None, Vec::new());
+        assert_eq!((files(&more), more.names().len()), (vec![csv.to_owned()], 3));
     }
 
     #[test]
     fn claiming_changes_nothing_that_can_be_seen() {
         let directory = tempfile::tempdir().unwrap();
-        let places = Places::new(
-            &directory.path().join("a/b"),
-            Some(&directory.path().join("run.csv")),
-            Some(PageFiles::of_run()),
-            figures(),
-        );
+        let tables = vec![(Form::Npz, directory.path().join("run.csv"))];
+        let page = Some(PageFiles::of_run());
+        let places = Places::new(&directory.path().join("a/b"), tables, Form::Csv, page, figures());
         drop(places.claim().unwrap());
         // Where it cannot be told whose lock there is, that stays.
         assert!(!cfg!(unix) || !directory.path().join("a/b").exists());
@@ -284,24 +285,26 @@ mod tests {
     }
 
     #[test]
-    fn a_csv_file_does_not_take_the_name_of_another() {
+    fn a_trajectory_does_not_take_the_name_of_another_file() {
         let directory = tempfile::tempdir().unwrap();
-        let fault =
-            Places::new(directory.path(), Some(&directory.path().join(JSON)), Some(PageFiles::of_run()), figures())
-                .claim()
-                .unwrap_err();
-        assert!(matches!(fault, OutputError::Clash(_)));
+        let [json, run] = [JSON, "run"].map(|name| directory.path().join(name));
+        for tables in [vec![(Form::Csv, json)], vec![(Form::Csv, run.clone()), (Form::Npz, run)]] {
+            let page = Some(PageFiles::of_run());
+            let fault = Places::new(directory.path(), tables, Form::Csv, page, figures()).claim().unwrap_err();
+            assert!(matches!(fault, OutputError::Clash(_)));
+        }
     }
 
     #[test]
     fn what_was_written_is_said() {
-        let written = |csv: Option<&str>, folder: Option<usize>| {
+        let written = |tables: &[&str], folder: Option<usize>| {
             let folder = folder.map(|count| (PathBuf::from("out"), count));
-            Written { csv: csv.map(PathBuf::from), folder, ..Written::default() }.to_string()
+            let tables = tables.iter().map(PathBuf::from).collect();
+            Written { tables, folder, ..Written::default() }.to_string()
         };
-        assert_eq!(written(None, Some(20)), "20 files in out");
-        assert_eq!(written(Some("run.csv"), Some(19)), "run.csv and 19 files in out");
-        assert_eq!(written(Some("run.csv"), None), "run.csv");
-        assert_eq!(written(None, None), "nothing");
+        assert_eq!(written(&[], Some(20)), "20 files in out");
+        assert_eq!(written(&["run.csv", "run.npz"], Some(19)), "run.csv, run.npz and 19 files in out");
+        assert_eq!(written(&["run.csv"], None), "run.csv");
+        assert_eq!(written(&[], None), "nothing");
     }
 }

@@ -11,3 +11,4 @@ mod picture;
 #[path = "../../../../bg-macros/picture/tests/support/mod.rs"]
 mod support;
 mod sweep;
+mod trajectory;

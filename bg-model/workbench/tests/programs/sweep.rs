@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use crate::example::program;
 use crate::outcome::text_of;
-use bg_workbench::sweep::parquet::{Table, Values};
+use bg_workbench::files::parquet::{Table, Values};
 
 fn run(directory: &Path, arguments: &[&str]) -> Output {
     program("pendulum").current_dir(directory).args(arguments).output().expect("the example was built")

@@ -1,12 +1,13 @@
 //! What stands in front of a statement: documentation comments and visibility.
 
-use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Span, TokenTree};
 
 use super::{
     SyntaxFault,
     cursor::{Cursor, Parsed},
     token::{TokenKind, joined},
 };
+use crate::source::visibility::Visibility;
 
 /// The documentation comment in front of a statement.
 #[derive(Debug)]
@@ -45,22 +46,18 @@ impl Cursor<'_> {
     }
 
     /// `pub`, `pub(crate)` or nothing.
-    pub fn visibility(&mut self) -> Parsed<syn::Visibility> {
-        let Some(span) = self.eat_word("pub") else { return Ok(syn::Visibility::Inherited) };
-        let mut tokens: Vec<TokenTree> = vec![Ident::new("pub", span).into()];
-        if self.delimiter() == Some(Delimiter::Parenthesis)
-            && let Some(TokenKind::Group(group)) = self.peek()
-        {
-            tokens.push(flat(group).into());
-        }
-        match syn::parse2(tokens.iter().cloned().collect()) {
-            Ok(visibility) => {
-                for _ in 1..tokens.len() {
-                    self.advance();
-                }
+    pub fn visibility(&mut self) -> Parsed<Visibility> {
+        let Some(span) = self.eat_word("pub") else { return Ok(Visibility::Private) };
+        let brackets = match self.peek() {
+            Some(TokenKind::Group(group)) if group.delimiter() == Delimiter::Parenthesis => group,
+            _ => return Ok(Visibility::Public(span)),
+        };
+        match Visibility::within(span, brackets) {
+            Some(visibility) => {
+                self.advance();
                 Ok(visibility)
             }
-            Err(_) => Err(self.unexpected("`(crate)`, `(super)` or `(in PATH)`")),
+            None => Err(self.unexpected("`(crate)`, `(super)` or `(in PATH)`")),
         }
     }
 }
@@ -84,12 +81,4 @@ fn comment(group: &Group) -> Option<String> {
 /// A line of a comment without its leading blank, and without carriage returns, which no comment may contain.
 fn line(text: &str) -> String {
     text.strip_prefix(' ').unwrap_or(text).replace('\r', "")
-}
-
-/// The group without groups inside of it, which no visibility has: syn would recurse on them without a limit.
-fn flat(group: &Group) -> Group {
-    let stream: TokenStream = group.stream().into_iter().filter(|tree| !matches!(tree, TokenTree::Group(_))).collect();
-    let mut flat = Group::new(group.delimiter(), stream);
-    flat.set_span(group.span());
-    flat
 }

@@ -11,6 +11,7 @@ use proc_macro2::{Delimiter, TokenStream};
 use crate::fault::{Fault, Staged};
 use crate::source::ast::{Graph, Source};
 use crate::source::drawing::Drawing;
+use crate::source::visibility::Visibility;
 use cursor::{Cursor, Noted, Parsed, Place};
 
 mod body;
@@ -76,7 +77,7 @@ fn declaration(call: &mut Cursor, source: &mut Source) -> Parsed<()> {
     }
     let docs = documentation.text;
     let visibility = call.visibility()?;
-    let is_private = matches!(visibility, syn::Visibility::Inherited);
+    let is_private = matches!(visibility, Visibility::Private);
     match call.word() {
         Some("graph") => graph(call, docs, visibility, &mut source.graphs),
         Some("part") => call.part(docs, visibility, source),
@@ -86,7 +87,7 @@ fn declaration(call: &mut Cursor, source: &mut Source) -> Parsed<()> {
 }
 
 /// `graph NAME { ... }`, after its documentation and visibility.
-fn graph(call: &mut Cursor, docs: String, visibility: syn::Visibility, graphs: &mut Vec<Graph>) -> Parsed<()> {
+fn graph(call: &mut Cursor, docs: String, visibility: Visibility, graphs: &mut Vec<Graph>) -> Parsed<()> {
     call.advance();
     let name = call.plain_name("the graph")?;
     let block = call.group(Delimiter::Brace, "`{ ... }`", &statement::GRAPH);

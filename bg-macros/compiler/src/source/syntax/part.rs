@@ -15,6 +15,7 @@ use crate::source::ast::{
     Argument, For, Foreign, Item, Junction, JunctionKind, Name, Part, PartPath, Port, Source, Start, StartKind, Use,
     Written,
 };
+use crate::source::visibility::Visibility;
 use crate::source::words::{STARTS, value_of};
 
 /// The block of a use.
@@ -38,7 +39,7 @@ const NUMBER: &str = "a whole number";
 /// Of a macro call.
 impl Cursor<'_> {
     /// `part NAME { ... }`, after its documentation and visibility.
-    pub fn part(&mut self, docs: String, visibility: syn::Visibility, source: &mut Source) -> Parsed<()> {
+    pub fn part(&mut self, docs: String, visibility: Visibility, source: &mut Source) -> Parsed<()> {
         let word = Ident::new("part", self.advance());
         let name = self.plain_name("the part")?;
         let body = if let Some(TokenKind::Group(group)) = self.peek() { Some(group.clone()) } else { None };

@@ -12,9 +12,9 @@ use thiserror::Error;
 
 use super::{Named, Setting, Source, made, named};
 use crate::ask::parameters::nearest;
-use crate::ask::quantity::quantity;
+use crate::ask::quantity::{Conversion, QuantityError, quantity};
 use crate::files::crc32;
-use crate::files::head::{Head, head};
+use crate::files::head::{Head, head, name_and_unit};
 
 /// An input setting that cannot be used.
 #[derive(Debug, Error)]
@@ -101,6 +101,18 @@ pub enum InputSettingError {
         /// Its line, counted from 1.
         line: u64,
     },
+    /// The unit in a column's head is not one of what the column has.
+    #[error("--input {setting}: {}, column `{column}`: {fault}", path.display())]
+    Unit {
+        /// The text.
+        setting: String,
+        /// The file.
+        path: PathBuf,
+        /// The column.
+        column: String,
+        /// Why.
+        fault: QuantityError,
+    },
     /// The rows are no table.
     #[error("--input {setting}: {fault}")]
     Table {
@@ -178,7 +190,7 @@ fn read(setting: &str, value: &str, unit: &str) -> Result<Setting, InputSettingE
         Some((path, column)) if !Path::new(file).exists() => (path, Some(column)),
         _ => (file, None),
     };
-    let table = table(setting, Path::new(path), column, cubic)?;
+    let table = table(setting, Path::new(path), column, cubic, unit)?;
     match table.input() {
         Ok(_) => Ok(table),
         Err(fault) => Err(InputSettingError::Table { setting: setting.to_owned(), fault }),
@@ -186,8 +198,14 @@ fn read(setting: &str, value: &str, unit: &str) -> Result<Setting, InputSettingE
 }
 
 /// The first column of a CSV file, and the one called `column` or the second. A first line of numbers is a row, one of
-/// names the head.
-fn table(setting: &str, path: &Path, column: Option<&str>, cubic: bool) -> Result<Setting, InputSettingError> {
+/// names the head; columns that have a unit there, as in `load [kN]`, become s and the unit `declared`.
+fn table(
+    setting: &str,
+    path: &Path,
+    column: Option<&str>,
+    cubic: bool,
+    declared: &str,
+) -> Result<Setting, InputSettingError> {
     let (setting, path) = (setting.to_owned(), path.to_owned());
     let unreadable = |source| InputSettingError::Unreadable { setting: setting.clone(), path: path.clone(), source };
     let bytes = std::fs::read(&path).map_err(|fault| unreadable(fault.into()))?;
@@ -205,17 +223,27 @@ fn table(setting: &str, path: &Path, column: Option<&str>, cubic: bool) -> Resul
         }
     };
     let position = match column {
-        Some(column) if has_head => first.iter().position(|name| name == column),
+        Some(column) if has_head => first.iter().position(|head| head == column || name_and_unit(head).0 == column),
         Some(column) => {
             return Err(InputSettingError::NoHead { setting, path, column: column.to_owned() });
         }
         None => (first.len() > 1).then_some(1),
     };
     let Some(position) = position else {
-        let known = first.iter().collect::<Vec<_>>().join(", ");
+        let known = first.iter().map(|head| name_and_unit(head).0).collect::<Vec<_>>().join(", ");
         let column = column.unwrap_or("of values").to_owned();
         return Err(InputSettingError::NoColumn { setting, path, column, known });
     };
+    let conversion = |place: usize, declared: &str| {
+        let (name, unit) = if has_head { name_and_unit(&first[place]) } else { ("", None) };
+        Conversion::between(unit.unwrap_or(declared), declared).map_err(|fault| InputSettingError::Unit {
+            setting: setting.clone(),
+            path: path.clone(),
+            column: name.to_owned(),
+            fault,
+        })
+    };
+    let (time, value) = (conversion(0, "s")?, conversion(position, declared)?);
     let (mut times, mut values) = (Vec::new(), Vec::new());
     for record in records.skip(usize::from(has_head)) {
         let record = record.map_err(unreadable)?;
@@ -229,10 +257,10 @@ fn table(setting: &str, path: &Path, column: Option<&str>, cubic: bool) -> Resul
                 line,
             })
         };
-        times.push(number(0)?);
-        values.push(number(position)?);
+        times.push(time.of(number(0)?));
+        values.push(value.of(number(position)?));
     }
-    let column = has_head.then(|| first[position].to_owned());
+    let column = has_head.then(|| name_and_unit(&first[position]).0.to_owned());
     let source = Source { file: path.display().to_string(), column, crc32: crc32(&bytes) };
     Ok(Setting::Table { times, values, cubic, source: Some(source) })
 }
@@ -269,6 +297,16 @@ mod tests {
         // The parabola through three rows: 1 + 2 t^2.
         assert_eq!((value(format!("force={path}")), value(format!("force=cubic:{path}"))), (2.0, 1.5));
         assert_eq!(chosen(&[]).unwrap()[0].value(1.0), 0.0);
+    }
+
+    #[test]
+    fn columns_with_units_in_their_heads_are_converted() {
+        let table = file("time [ms], pull [kN], turn [N*mm]\n0, 1, 5\n500, 3, 6\n");
+        let path = table.path().display();
+        let inputs = chosen(&[format!("force={path}"), format!("torque={path}:turn")]).unwrap();
+        assert_eq!((inputs[0].value(0.25), inputs[1].value(0.5)), (2000.0, 0.006));
+        let fault = fault(&format!("force={path}:turn"));
+        assert!(fault.ends_with("column `turn`: must be in N or a unit like it, and `N*mm` is none"), "{fault}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Measured columns: a CSV file with gaps, matched to a model's outputs.
 //!
-//! In: a file whose first column is `t` (s), which output each column measures. Out: values at instants, none where a
+//! In: a file whose first column is `t`, which output each column measures; units may stand in the heads, as in `t [ms]`. Out: values at instants, none where a
 //! field is empty or `nan`.
 
 use std::io::Read;
@@ -11,7 +11,8 @@ use bg_model::description::OutputInfo;
 use thiserror::Error;
 
 use crate::ask::parameters::nearest;
-use crate::files::head::is_row;
+use crate::ask::quantity::{Conversion, QuantityError};
+use crate::files::head::{is_row, name_and_unit};
 
 /// A file that is no measurement.
 #[derive(Debug, Error)]
@@ -35,6 +36,14 @@ pub enum DataError {
     /// The first line is a row already.
     #[error("its first line has numbers; write a first line with `t`, the time in s, and the names of outputs")]
     NoHead,
+    /// The unit in a head is not one of what the column measures.
+    #[error("column `{column}`: {fault}")]
+    Unit {
+        /// The column.
+        column: String,
+        /// Why.
+        fault: QuantityError,
+    },
     /// A field is not a number.
     #[error("`{field}` in line {line} is not a number; leave the field empty where nothing was measured")]
     NotANumber {
@@ -97,7 +106,9 @@ pub fn read(
     if is_row(csv.headers()?) {
         return Err(DataError::NoHead);
     }
-    let header: Vec<String> = csv.headers()?.iter().map(str::to_owned).collect();
+    let heads = csv.headers()?.clone();
+    let (header, units): (Vec<String>, Vec<Option<&str>>) =
+        heads.iter().map(name_and_unit).map(|(name, unit)| (name.to_owned(), unit)).unzip();
     if header.first().map(String::as_str) != Some("t") {
         return Err(DataError::NoTime);
     }
@@ -112,6 +123,15 @@ pub fn read(
     };
     let is_used = |output: &usize| only.is_empty() || only.contains(output);
     let places: Vec<Option<usize>> = header[1..].iter().map(|name| output_of(name).filter(is_used)).collect();
+    let conversion = |(place, declared): (usize, &str)| {
+        let fault = |fault| DataError::Unit { column: header[place].clone(), fault };
+        Conversion::between(units[place].unwrap_or(declared), declared).map_err(fault)
+    };
+    let time = conversion((0, "s"))?;
+    let of_column = |(index, output): (usize, &Option<usize>)| {
+        output.map(|output| conversion((index + 1, outputs[output].unit))).transpose()
+    };
+    let conversions = places.iter().enumerate().map(of_column).collect::<Result<Vec<_>, _>>()?;
     let column = |(name, output): (&String, &Option<usize>)| {
         output.map(|output| Measured { name: name.clone(), output, values: Vec::new() })
     };
@@ -126,15 +146,15 @@ pub fn read(
             number.map_err(|_| DataError::NotANumber { field: field.to_owned(), line })
         };
         let mut fields = record.iter();
-        let t = number(fields.next().unwrap_or_default())?;
+        let t = time.of(number(fields.next().unwrap_or_default())?);
         if !(t >= 0.0 && t.is_finite() && times.last().is_none_or(|&last| t > last)) {
             return Err(DataError::Order { t, line });
         }
         times.push(t);
-        for (column, field) in columns.iter_mut().zip(fields) {
-            if let Some(column) = column {
-                let value =
-                    if field.is_empty() { None } else { Some(number(field)?).filter(|value| value.is_finite()) };
+        for ((column, conversion), field) in columns.iter_mut().zip(&conversions).zip(fields) {
+            if let (Some(column), Some(unit)) = (column, conversion) {
+                let value = if field.is_empty() { None } else { Some(unit.of(number(field)?)) };
+                let value = value.filter(|value| value.is_finite());
                 column.values.push(value);
             }
         }
@@ -183,6 +203,19 @@ mod tests {
         assert_eq!(data.columns[0].values, [Some(1.0), None, Some(5.0)]);
         assert_eq!((data.columns[1].output, &data.columns[1].values), (1, &vec![Some(2.0), None, Some(6.0)]));
         assert_eq!(data.count(), 4);
+    }
+
+    #[test]
+    fn columns_with_units_in_their_heads_are_converted() {
+        let data = read("t [ms],x [mm],other [furlong]\n0,250,1\n100,500,2\n", &[]).unwrap();
+        assert_eq!((data.times.as_slice(), &data.columns[0].values), (&[0.0, 0.1][..], &vec![Some(0.25), Some(0.5)]));
+        assert_eq!(data.ignored, ["other"]);
+        let fault = |text: &str| read(text, &[]).unwrap_err();
+        assert_eq!(fault("t,x [kg]\n0,1\n"), "column `x`: must be in m or a unit like it, and `kg` is none");
+        assert_eq!(
+            fault("t [fortnight],x\n0,1\n"),
+            "column `t`: must be in s or a unit like it, and `fortnight` is no unit"
+        );
     }
 
     #[test]

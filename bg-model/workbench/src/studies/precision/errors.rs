@@ -4,13 +4,16 @@
 //! forces, over the reference's instants and the columns that both have. An orientation, nine columns, counts as one:
 //! the angle of the rotation between the two.
 
-use std::f64::consts::{SQRT_2, TAU};
+use std::f64::consts::SQRT_2;
 
+use bg_units::Unit;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use bg_model::description::OutputInfo;
 use bg_model::simulation::{MissingColumn, Recording};
+
+use crate::ask::quantity::turn;
 
 /// A trajectory that cannot be compared with a reference.
 #[derive(Debug, Error)]
@@ -51,13 +54,19 @@ enum Kind {
 }
 
 /// The kind of a quantity of this unit, if its errors count.
-fn kind(unit: &str) -> Option<Kind> {
-    match unit {
-        "m" | "rad" => Some(Kind::Pose),
-        "kg*m/s" | "N*s" | "kg*m^2/s" | "N*m*s" => Some(Kind::Momentum),
-        "N" => Some(Kind::Force),
-        _ => None,
-    }
+fn kind(unit: Unit) -> Option<Kind> {
+    let kinds = [
+        ("m", Kind::Pose),
+        ("rad", Kind::Pose),
+        ("kg*m/s", Kind::Momentum),
+        ("kg*m^2/s", Kind::Momentum),
+        ("N", Kind::Force),
+    ];
+    let is_like = |known: &str| {
+        let known: Unit = known.parse().expect("a unit");
+        (known.dimension, known.angle) == (unit.dimension, unit.angle)
+    };
+    kinds.into_iter().find(|(known, _)| is_like(known)).map(|(_, kind)| kind)
 }
 
 impl Errors {
@@ -73,10 +82,12 @@ impl Errors {
         }
         let mut differences: [Vec<f64>; 3] = Default::default();
         for column in reference.columns.iter().filter(|column| ours.has(&column.name)) {
-            let Some(kind) = kind(&column.unit) else { continue };
-            let turn = if column.unit == "rad" { TAU } else { f64::INFINITY };
+            let Ok(unit) = column.unit.parse::<Unit>() else { continue };
+            let Some(kind) = kind(unit) else { continue };
+            let turn = turn(&column.unit);
             let (ours, theirs) = (ours.values(&column.name)?, &column.values);
-            differences[kind as usize].extend(ours.iter().zip(theirs).map(|(a, b)| modulo(a - b, turn).abs()));
+            let difference = |(a, b): (&f64, &f64)| unit.in_si(modulo(a - b, turn).abs());
+            differences[kind as usize].extend(ours.iter().zip(theirs).map(difference));
         }
         for matrix in outputs.chunk_by(|a, b| a.of == b.of).filter(|components| is_orientation(components)) {
             if matrix.iter().all(|component| reference.has(component.name)) {
@@ -120,6 +131,8 @@ fn measure(errors: &[f64]) -> Option<Measure> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
     use bg_model::simulation::Column;
 

@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 use toml::Table as Recipe;
 
-use super::parquet::{ParquetError, Table};
 use super::recipe::difference;
+use crate::files::parquet::{ParquetError, Table};
 use crate::files::{FileError, check_is_no_file, whole};
 
 const RECIPE: &str = "sweep.toml";
@@ -206,7 +206,7 @@ impl Folder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::studies::sweep::parquet::{Column, Values};
+    use crate::files::parquet::{Column, Values};
 
     #[test]
     fn what_a_killed_process_left_is_removed_and_nothing_else() {

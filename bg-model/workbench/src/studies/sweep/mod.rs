@@ -13,13 +13,11 @@
 //! | [`runs`] | the runs of a shard, as tables |
 //! | [`lanes`] | the same runs side by side |
 //! | [`folder`] | which shards there are |
-//! | [`parquet`] | tables as Parquet files |
 //! | [`shown`] | what a folder has |
 
 pub mod design;
 pub mod folder;
 pub mod lanes;
-pub mod parquet;
 pub mod plan;
 pub mod recipe;
 pub mod runs;

@@ -12,12 +12,12 @@ use bg_model::simulation::Recording;
 
 use super::OWN_COLUMNS;
 use super::design::Design;
-use super::parquet::{Column, Table, Values};
 use super::plan::Plan;
 use super::recipe::OF_SIZES;
 use super::wanted::Wanted;
 use crate::ask::parameters::Values as Parameters;
 use crate::ask::scenes::{Models, Scene};
+use crate::files::parquet::{Column, Table, Values};
 use crate::program::Program;
 use crate::run::running::{Begin, Outcome, follow};
 

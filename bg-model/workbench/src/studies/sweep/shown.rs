@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use super::folder::{Folder, FolderError, Kind};
-use super::parquet::{Table, Values};
 use super::recipe::{INPUT_FILES, INPUTS};
+use crate::files::parquet::{Table, Values};
 
 /// The most reasons that are listed.
 const MOST: usize = 10;

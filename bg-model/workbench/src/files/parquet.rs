@@ -59,13 +59,13 @@ pub enum ParquetError {
     #[error("its values: {0}")]
     Snappy(#[from] snap::Error),
     /// It is Parquet of another writer.
-    #[error("it is not written by a sweep")]
+    #[error("another program wrote it")]
     Foreign,
 }
 
 impl Values {
     /// How many.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         match self {
             Self::Whole(values) => values.len(),
             Self::Real(values) => values.len(),
