@@ -83,7 +83,7 @@
 //!
 //! # Without `std`
 //!
-//! With `default-features = false` the crate needs an allocator only, and lacks the modules `extended`, `run` and
+//! With `default-features = false` and the feature `macros` the crate needs an allocator only, and lacks the modules `extended`, `run` and
 //! `sensitivity`. A run has the same bits; a start that closes joints, and algebraic loops that are not linear, are the
 //! same to rounding.
 //!
@@ -94,6 +94,7 @@
 //! elementary functions come from `libm`, so debug and release builds give the same bytes.
 
 #![cfg_attr(not(feature = "std"), no_std)]
+#![cfg_attr(target_arch = "wasm32", allow(dead_code, reason = "a page follows one run at a time"))]
 
 extern crate alloc;
 
@@ -114,6 +115,7 @@ pub use model::{
 pub use solve::{extended, run, sensitivity};
 pub use solve::{failure, fixed_step, integrator, simulation, statistics};
 
+#[cfg(feature = "macros")]
 pub use bg_macros::bond_graph;
 pub use nalgebra;
 pub use serde;

@@ -6,6 +6,7 @@
 
 pub use alloc::vec;
 
+#[cfg(feature = "macros")]
 pub use bg_macros::picture;
 
 pub use crate::model::dynamics::Over;

@@ -2,5 +2,6 @@
 
 pub mod identify;
 pub mod linear;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod npz;
 pub mod thinning;

@@ -2,7 +2,7 @@
 //!
 //! Read here and not by syn, whose type for it leads to all of Rust's syntax: a tenth of the compiler as WebAssembly.
 
-use proc_macro2::{Delimiter, Group, Span, TokenStream};
+use proc_macro2::{Delimiter, Group, Span, TokenStream, TokenTree};
 use quote::{ToTokens, TokenStreamExt, quote_spanned};
 
 /// Who may name it.
@@ -49,8 +49,10 @@ impl Visibility {
     }
 }
 
+/// The words in the brackets; what is in brackets itself, of whatever depth, is `()`.
 fn words(brackets: &Group) -> Vec<String> {
-    brackets.stream().into_iter().map(|tree| tree.to_string()).collect()
+    let word = |tree: TokenTree| if matches!(tree, TokenTree::Group(_)) { "()".to_owned() } else { tree.to_string() };
+    brackets.stream().into_iter().map(word).collect()
 }
 
 impl ToTokens for Visibility {
@@ -71,7 +73,7 @@ mod tests {
     fn brackets_hold_a_place_or_a_path() {
         let read = |text: &str| {
             let group = text.parse::<TokenStream>().unwrap().into_iter().next().unwrap();
-            let proc_macro2::TokenTree::Group(group) = group else { panic!("{text}") };
+            let TokenTree::Group(group) = group else { panic!("{text}") };
             Visibility::within(Span::call_site(), &group).map(|visibility| visibility.text())
         };
         for text in ["(crate)", "(super)", "(self)", "(in a)", "(in a::b)", "(in ::a::r#in)", "(in crate::a)"] {
@@ -86,6 +88,7 @@ mod tests {
             "(in a:b)",
             "(in a::)",
             "(in a::(b))",
+            "(in a (b))",
             "(in 3)",
             "[crate]",
         ] {
