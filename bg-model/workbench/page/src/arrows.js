@@ -1,21 +1,26 @@
 // Joint forces as arrows.
-// In: the joints of the page's data. Out: an arrow each, from the joint along the force on its second body; the
-// longest force of the run is a quarter of the machine long.
+// In: the joints of the page's data. Out: an arrow each, from the joint along the force on its second body. A quarter of
+// the machine is as long as the largest force; where a few instants have far larger ones than all others, as long as the
+// force that 95 % are below, and arrows are cut at twice that.
 
 import { ConeGeometry, CylinderGeometry, Group, Mesh, MeshStandardMaterial, Quaternion, Vector3 } from "three";
 import { between } from "./clock.js";
 
 const UP = new Vector3(0, 1, 0);
 const SHARE = 0.25;
+/** The part of the forces that those are below which count as usual. */
+export const USUAL = 0.95;
+/** How many times as large as these the largest may be without being cut, and how many times as long cut arrows are. */
+const RARE = 3;
+const CUT = 2;
 
-/** The largest size of a force of these joints over the run, N. */
-export function largestForce(joints) {
-  let square = 0;
+/** The sizes of all forces of these joints over the run, N, from the least on. */
+function sizes(joints) {
+  const found = [];
   for (const { force } of joints) {
-    for (let k = 0; k < force.length; k += 3)
-      square = Math.max(square, force[k] ** 2 + force[k + 1] ** 2 + force[k + 2] ** 2);
+    for (let k = 0; k < force.length; k += 3) found.push(Math.hypot(force[k], force[k + 1], force[k + 2]));
   }
-  return Math.sqrt(square);
+  return Float64Array.from(found).sort();
 }
 
 class Arrow {
@@ -46,8 +51,14 @@ class Arrow {
 export class Arrows {
   constructor(times, joints, size, material = new MeshStandardMaterial({ roughness: 0.5 })) {
     Object.assign(this, { times, joints, material });
-    this.largest = largestForce(joints);
-    this.unit = this.largest > 0 ? (SHARE * size) / this.largest : 0;
+    const all = sizes(joints);
+    this.largest = all.at(-1) ?? 0;
+    const usual = all[Math.floor(USUAL * (all.length - 1))] ?? 0;
+    /** Whether arrows are cut, N of the arrow that is a quarter of the machine, and the length beyond which there are none, m. */
+    this.isCut = usual > 0 && this.largest > RARE * usual;
+    this.reference = this.isCut ? usual : this.largest;
+    this.unit = this.reference > 0 ? (SHARE * size) / this.reference : 0;
+    this.most = CUT * SHARE * size;
     this.scale = 1;
     this.group = new Group();
     this.arrows = joints.map(({ name, kind }) => new Arrow(`${name} (${kind})`, size, this.material));
@@ -62,6 +73,7 @@ export class Arrows {
   show(time) {
     this.arrows.forEach((arrow, index) => {
       const force = this.force(index, time).multiplyScalar(this.unit * this.scale);
+      if (this.isCut) force.clampLength(0, this.most);
       arrow.point(vectorAt(this.times, this.joints[index].place, time), force);
     });
   }

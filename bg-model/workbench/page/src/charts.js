@@ -4,7 +4,7 @@
 
 import uPlot from "uplot";
 import { between } from "./clock.js";
-import { colour, element, hue, number, onScheme } from "./page.js";
+import { colour, download, element, hue, number, onScheme } from "./page.js";
 
 const FONT = "12px system-ui, sans-serif";
 const HEIGHT = 190;
@@ -120,9 +120,23 @@ class Chart {
     if (title) head.append(element("h3", {}, title));
     head.append(...this.legend.map((entry) => entry.button));
     if (unit) head.append(element("span", { class: "unit" }, unit));
+    const save = () => download(`${title || curves[0].name}.csv`, new Blob([this.csv()], { type: "text/csv" }));
+    head.append(element("button", { type: "button", class: "save", title: "Save the numbers shown", onclick: save }, "csv"));
     this.place = element("figure", { class: "chart" }, head, this.canvas);
     parent.append(this.place);
     new ResizeObserver(() => this.#resize()).observe(this.canvas);
+  }
+
+  /** The curves shown in the part of time shown, as a CSV file. */
+  csv() {
+    const shown = this.curves.flatMap((_, index) => (this.#hidden.has(index) ? [] : [index]));
+    const [start, end] = this.charts.span;
+    const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+    const head = (index) => quoted(`${this.curves[index].name}${this.unit ? ` [${this.unit}]` : ""}`);
+    const rows = this.times.flatMap((t, k) =>
+      t < start || t > end ? [] : [[t, ...shown.map((index) => this.values[index][k] ?? "")].join(",")],
+    );
+    return `${[["t [s]", ...shown.map(head)].join(","), ...rows].join("\n")}\n`;
   }
 
   #entry(curve, index) {

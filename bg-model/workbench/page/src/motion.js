@@ -1,7 +1,9 @@
 // The section of the moving machine: the view and what can be chosen of it.
 // In: the page's data, a clock. Out: the view, or `null` where there is nothing to show it with.
 
-import { element, number } from "./page.js";
+import { USUAL } from "./arrows.js";
+import { download, element, number } from "./page.js";
+import { film } from "./film.js";
 import { MachineView, VIEWS, webgl } from "./scene.js";
 
 export function motion(section, animation, clock) {
@@ -17,7 +19,7 @@ export function motion(section, animation, clock) {
     return null;
   }
   const view = new MachineView(place, renderer, animation, clock);
-  place.append(viewButtons(view));
+  place.append(viewButtons(view), pictureButtons(view, clock));
   tips(place, view);
   const options = element("div", { class: "options" });
   if (view.arrows.largest > 0) options.append(forceOptions(view));
@@ -30,6 +32,23 @@ function viewButtons(view) {
   const button = (name) =>
     element("button", { type: "button", title: `Look at all of it: ${name}`, onclick: () => view.look(name) }, name);
   return element("div", { class: "views" }, ...Object.keys(VIEWS).map(button));
+}
+
+/** A photo of the view, and a film of the run from where the bar is, at the bar's speed. */
+function pictureButtons(view, clock) {
+  const name = document.title || "machine";
+  const photo = element(
+    "button",
+    {
+      type: "button",
+      title: "Save this view as a picture",
+      onclick: () => view.copied().toBlob((picture) => download(`${name}.png`, picture)),
+    },
+    "photo",
+  );
+  const buttons = element("div", { class: "views pictures" }, photo);
+  if (globalThis.MediaRecorder && HTMLCanvasElement.prototype.captureStream) buttons.append(film(view, clock, name));
+  return buttons;
 }
 
 /** The name of what the pointer is on. */
@@ -59,12 +78,19 @@ function forceOptions(view) {
     step: 0.01,
     value: 0,
     "aria-label": "Length of the arrows",
-    oninput: () => view.forces(box.checked, 10 ** Number(scale.value)),
+    oninput: () => {
+      view.forces(box.checked, 10 ** Number(scale.value));
+      say();
+    },
   });
   const most = element("span", { class: "note" });
-  view.onUpdate(() => {
-    most.textContent = `up to ${number(view.arrows.largest, 3)} N`;
-  });
+  const say = () => {
+    const { largest, reference, isCut } = view.arrows;
+    const above = 2 * reference * 10 ** -Number(scale.value);
+    const cut = `; arrows of more than ${number(above, 3)} N are cut, ${100 * USUAL} % are below ${number(reference, 3)} N`;
+    most.textContent = `up to ${number(largest, 3)} N${isCut ? cut : ""}`;
+  };
+  view.onUpdate(say);
   return element(
     "div",
     { class: "option" },

@@ -6,6 +6,7 @@ import {
   AmbientLight,
   Box3,
   BufferGeometry,
+  CanvasTexture,
   Color,
   ConeGeometry,
   DirectionalLight,
@@ -20,6 +21,8 @@ import {
   Quaternion,
   Raycaster,
   Scene,
+  Sprite,
+  SpriteMaterial,
   Vector2,
   Vector3,
   WebGLRenderer,
@@ -27,7 +30,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { Arrows } from "./arrows.js";
 import { between } from "./clock.js";
-import { colour, hue, number, onScheme } from "./page.js";
+import { colour, element, hue, number, onScheme } from "./page.js";
 import { body, materials } from "./solids.js";
 import { Trace, lengthOf, path, placeAt } from "./traces.js";
 
@@ -208,7 +211,7 @@ export class MachineView {
     this.support.color.set(colour("axis"));
     this.grid.material.vertexColors = false;
     this.grid.material.color.set(colour("grid"));
-    this.axes.children.forEach((line, axis) => line.material.color.set(hue(axis)));
+    this.axes.children.forEach(({ material }, index) => material.color.set(hue(index % 3)));
     for (const [key, trace] of this.traces) trace.tint(hue(Number(key.split(":")[0])));
   }
 
@@ -346,15 +349,23 @@ export class MachineView {
     return joint < 0 ? label : `${label}: ${number(this.arrows.force(joint, this.clock.time).length(), 4)} N`;
   }
 
+  /** What is seen, with the page's background: drawn into `copy`, or into a new canvas. */
+  copied(copy = element("canvas", { width: this.canvas.width, height: this.canvas.height })) {
+    this.renderer.render(this.scene, this.camera);
+    const context = copy.getContext("2d");
+    context.fillStyle = colour("paper");
+    context.fillRect(0, 0, copy.width, copy.height);
+    context.drawImage(this.canvas, 0, 0, copy.width, copy.height);
+    return copy;
+  }
+
   /** Puts a copy in the place of the view: a browser prints none of its own. */
   print(isPaper) {
     this.copy?.remove();
     this.copy = null;
     if (!isPaper) return;
-    this.renderer.render(this.scene, this.camera);
-    this.copy = document.createElement("canvas");
-    Object.assign(this.copy, { className: "copy", width: this.canvas.width, height: this.canvas.height });
-    this.copy.getContext("2d").drawImage(this.canvas, 0, 0);
+    this.copy = this.copied();
+    this.copy.className = "copy";
     this.canvas.after(this.copy);
   }
 
@@ -380,11 +391,29 @@ function shown(object) {
   return object === null || (object.visible && shown(object.parent));
 }
 
-/** Three lines along x, y and z, which get the colours of these components in the charts. */
+/** Lines along x, y and z with their letters, which get the colours of these components in the charts. */
 function triad(length) {
+  const axes = [0, 1, 2];
+  const along = (axis, way) => new Vector3().setComponent(axis, way * length);
   const line = (axis) => {
-    const end = new Vector3().setComponent(axis, length);
-    return new Line(new BufferGeometry().setFromPoints([new Vector3(), end]), new LineBasicMaterial());
+    const geometry = new BufferGeometry().setFromPoints([new Vector3(), along(axis, 1)]);
+    return new Line(geometry, new LineBasicMaterial());
   };
-  return new Group().add(...[0, 1, 2].map(line));
+  const lettered = (axis) => {
+    const sprite = new Sprite(new SpriteMaterial({ map: letter("xyz"[axis]), depthTest: false }));
+    sprite.position.copy(along(axis, 1.25));
+    sprite.scale.setScalar(0.55 * length);
+    return sprite;
+  };
+  return new Group().add(...axes.map(line), ...axes.map(lettered));
+}
+
+/** A letter as a texture, white: the material has the colour. */
+function letter(text) {
+  const canvas = element("canvas", { width: 64, height: 64 });
+  const context = canvas.getContext("2d");
+  Object.assign(context, { font: "bold 52px system-ui, sans-serif", fillStyle: "white" });
+  Object.assign(context, { textAlign: "center", textBaseline: "middle" });
+  context.fillText(text, 32, 32);
+  return new CanvasTexture(canvas);
 }

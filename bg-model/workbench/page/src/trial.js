@@ -114,6 +114,8 @@ async function found(verdict, { clock, charts, view, picture, live }) {
   await frame();
   verdict.pressed_to = clock.time;
   verdict.colours = colours(view);
+  verdict.photo = view?.copied().getContext("2d").getImageData(0, 0, 1, 1).data[3] ?? null;
+  verdict.csv = charts.all[0]?.csv().split("\n").slice(0, 2) ?? null;
   verdict.swing = await swing(view, clock, poses);
   if (picture) {
     picture.show(0);

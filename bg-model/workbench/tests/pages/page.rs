@@ -193,6 +193,10 @@ fn a_browser_shows_plays_and_scrubs() {
     assert!((number(&verdict["charts"]["line"]) - 1.0).abs() < 0.01, "the charts follow the slider: {verdict}");
     assert!((number(&verdict["pressed_to"]) - 0.5).abs() < 0.02, "the time follows a press in a chart: {verdict}");
     assert!(number(&verdict["colours"]) > 50.0, "the machine is drawn: {verdict}");
+    assert_eq!(verdict["photo"], 255, "a photo has a background");
+    let csv = verdict["csv"].as_array().expect("lines of the first chart's numbers");
+    assert!(csv[0].as_str().is_some_and(|head| head.starts_with("t [s],")), "{csv:?}");
+    assert!(csv[1].as_str().is_some_and(|row| row.starts_with("0,") && row.split(',').count() > 1), "{csv:?}");
     assert_eq!(verdict["bond_charts"], 3);
     let swing = &verdict["swing"];
     assert!(number(&swing["moved"]) >= 1e-3 && swing["pressed"] == "true", "a mode moves the machine: {swing}");
