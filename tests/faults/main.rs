@@ -248,6 +248,7 @@ const MORE: [(&str, &str); 45] = [
     ("BG0314", "Se f = 1; 1 j: translation; I m = 2; R r = norm(▸[0, 1]); f -> j -> m; j -> r;"),
     ("BG0314", "body rod { sphere radius 1; density 1; point end = ▸[0, 1]; }"),
     ("BG0314", "body rod { mass 1; inertia ▸2; }"),
+    ("BG0314", "let v: m/s = [1, 2, 3]; body rod { sphere radius 1; density 1; start velocity guess(▸v); }"),
     ("BG0318", "param a: m = 1;\nlet c = ▸root(sqrt(a), sqrt(a));\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0323", "let v: m/s = 1; body rod { sphere radius 1; density 1; point end = [v * ▸t, 0, 0]; }"),
     (

@@ -27,11 +27,11 @@ BOND = {
 graph Pendulum {{
     gravity [0, -{G}, 0];
     ground {{ point pivot = [0, 0, 0]; }}
-    body rod {{ mass 1; inertia [0, {LENGTH**2 / 12}, {LENGTH**2 / 12}]; point end = [-{LENGTH / 2}, 0, 0];
+    body rod {{ mass 1; inertia [1e-6, {LENGTH**2 / 12}, {LENGTH**2 / 12}]; point end = [-{LENGTH / 2}, 0, 0];
                start end at [0, 0, 0]; start turned rotation_z({PENDULUM_START}); }}
     joint pin: revolute z (ground.pivot -> rod.end) {{ rigid; }}
     observe {{ angle: rad = pin.angle; }}
-    scene planar;
+    scene planar {{ observe {{ angle: rad = pin.angle; }} }}
 }}
 """,
     "slider-crank": f"""
@@ -40,20 +40,22 @@ graph SliderCrank {{
     let phi = -asin({CRANK} * sin(start_angle) / {ROD});
     gravity [0, -{G}, 0];
     ground {{ point shaft = [0, 0, 0]; }}
-    body crank {{ mass {CRANK_MASS}; inertia [0, {CRANK_MASS * CRANK**2 / 12}, {CRANK_MASS * CRANK**2 / 12}];
+    body crank {{ mass {CRANK_MASS}; inertia [1e-6, {CRANK_MASS * CRANK**2 / 12}, {CRANK_MASS * CRANK**2 / 12}];
                  point inner = [-{CRANK / 2}, 0, 0]; point outer = [{CRANK / 2}, 0, 0];
-                 start inner at [0, 0, 0]; start turned rotation_z(start_angle); start spin [0, 0, {SPEED}]; }}
-    body rod {{ mass {ROD_MASS}; inertia [0, {ROD_MASS * ROD**2 / 12}, {ROD_MASS * ROD**2 / 12}];
+                 start inner at [0, 0, 0]; start turned rotation_z(start_angle);
+                 start velocity guess([0, 0, 0]); start spin [0, 0, {SPEED}]; }}
+    body rod {{ mass {ROD_MASS}; inertia [1e-6, {ROD_MASS * ROD**2 / 12}, {ROD_MASS * ROD**2 / 12}];
                point inner = [-{ROD / 2}, 0, 0]; point outer = [{ROD / 2}, 0, 0];
-               start inner at [{CRANK} * cos(start_angle), {CRANK} * sin(start_angle), 0]; start turned rotation_z(phi); }}
+               start inner at [{CRANK} * cos(start_angle), {CRANK} * sin(start_angle), 0]; start turned rotation_z(phi);
+               start velocity guess([0, 0, 0]); start spin guess([0, 0, 0]); }}
     body block {{ mass {SLIDER}; inertia [1e-3, 1e-3, 1e-3];
-                 start at [{CRANK} * cos(start_angle) + {ROD} * cos(phi), 0, 0]; }}
+                 start at [{CRANK} * cos(start_angle) + {ROD} * cos(phi), 0, 0]; start velocity guess([0, 0, 0]); }}
     joint bearing: revolute z (ground.shaft -> crank.inner) {{ rigid; }}
     joint knee: revolute z (crank.outer -> rod.inner) {{ rigid; }}
     joint wrist: revolute z (rod.outer -> block) {{ rigid; }}
     joint guide: prismatic x (ground.shaft -> block) {{ rigid; }}
     observe {{ angle: rad = bearing.angle; }}
-    scene planar;
+    scene planar {{ observe {{ angle: rad = bearing.angle; }} }}
 }}
 """,
 }

@@ -55,7 +55,7 @@ graph FourBar {
     body coupler {
         mass 1; inertia [0.01, 0.01, 0.02]; point A = [-0.14, 0.02, 0]; point B = [0.14, 0.02, 0];
         start A at [guess(0.05), guess(0.1), 0]; start turned rotation_z(guess(0.2));
-        start spin guess; start velocity guess;
+        start spin guess; start velocity guess([0.1, 0, 0]);
     }
     body rocker {
         mass 1; inertia [0.01, 0.01, 0.02]; point P = [-0.125, 0, 0]; point B = [0.125, 0, 0];

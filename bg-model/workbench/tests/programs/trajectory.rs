@@ -77,7 +77,10 @@ fn options_come_from_a_file_and_those_of_the_command_line_win() {
     let write = |text: &str| fs::write(path.join("run.toml"), text).unwrap();
     write("t_end = 0.1\nmethod = \"dop853\"\noutput = [\"angle\"]\nno-figures = true\n[set]\nlength = \"800mm\"\n");
     let told = text(path, &["run", "--config", "run.toml", "--out", "a"]);
-    assert!(told.contains("length = 0.8 m") && told.contains("DOP853") && told.contains("simulated time    0.1 s"), "{told}");
+    assert!(
+        told.contains("length = 0.8 m") && told.contains("DOP853") && told.contains("simulated time    0.1 s"),
+        "{told}"
+    );
     let told = text(path, &["--config", "run.toml", "--out", "b", "--set", "length=0.7", "--t-end", "0.2"]);
     assert!(told.contains("length = 0.7 m") && told.contains("simulated time    0.2 s"), "{told}");
     let csv = fs::read_to_string(path.join("b/trajectory.csv")).unwrap();

@@ -75,8 +75,7 @@ impl Resolver {
                 if !matches!(place, Place::Start | Place::Plain | Place::Let) {
                     self.fault(span, &GraphFault::GuessOutsideStart);
                 }
-                self.graph.guesses.push(terms.remove(0));
-                TermKind::Guess(self.graph.guesses.len() - 1)
+                self.guess(terms.remove(0)).kind
             }
             ("integral", _) => {
                 if place != Place::Observed {
@@ -98,6 +97,19 @@ impl Resolver {
             }
             (_, Some((builtin, _))) => TermKind::Call(builtin, terms),
             (_, None) => TermKind::Number(0.0),
+        };
+        Term { kind, span }
+    }
+
+    /// An unknown of the assembly for a first guess; of a vector one for each component.
+    fn guess(&mut self, first: Term) -> Term {
+        let span = first.span;
+        let kind = match first.kind {
+            TermKind::Vector(parts) => TermKind::Vector(parts.into_iter().map(|part| self.guess(part)).collect()),
+            kind => {
+                self.graph.guesses.push(Term { kind, span });
+                TermKind::Guess(self.graph.guesses.len() - 1)
+            }
         };
         Term { kind, span }
     }
