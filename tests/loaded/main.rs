@@ -1,6 +1,7 @@
 //! Models of text, interpreted and in machine code, beside the same models compiled by rustc: tables, functions and
 //! runs are equal to the bit.
 
+mod criteria;
 mod random;
 mod studies;
 mod texts;

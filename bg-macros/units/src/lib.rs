@@ -52,6 +52,12 @@ impl Unit {
         symbols::find(symbol)
     }
 
+    /// The coherent SI unit of a dimension.
+    #[must_use]
+    pub const fn coherent(dimension: Dimension) -> Self {
+        Self { dimension, ..Self::ONE }
+    }
+
     /// The product of two units.
     #[must_use]
     pub fn times(self, other: Self) -> Self {

@@ -1,7 +1,10 @@
 #![doc = include_str!("../README.md")]
 
+pub mod criterion;
 pub mod identify;
 pub mod linear;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod npz;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod optimize;
 pub mod thinning;

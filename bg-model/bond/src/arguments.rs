@@ -98,7 +98,7 @@ pub struct Call {
 }
 
 /// The workbench's commands on a file, each with what it does.
-const COMMANDS: [(&str, &str); 12] = [
+const COMMANDS: [(&str, &str); 13] = [
     ("run", "Runs a model: a summary, and files with its outputs and figures"),
     ("report", "Runs it and writes one page: motion, charts, the graph"),
     ("graph", "Prints or draws the bond graph, its states, equations and operations"),
@@ -107,6 +107,7 @@ const COMMANDS: [(&str, &str); 12] = [
     ("compare", "Two scenes or runs beside each other"),
     ("precision", "Error and work of the integrators"),
     ("sensitivity", "Derivatives of outputs by parameters"),
+    ("optimize", "Parameters with which a number of a run is least"),
     ("identify", "Parameters from measured data"),
     ("scene", "Lists the scenes, or says what one is"),
     ("parameters", "Lists the parameters"),
@@ -243,7 +244,7 @@ fn call(command: &[&str], mut words: impl Iterator<Item = OsString>) -> Result<A
 }
 
 /// The commands that ask for one scene.
-const OF_ONE_SCENE: [&str; 5] = ["run", "linearize", "sensitivity", "identify", "fmu"];
+const OF_ONE_SCENE: [&str; 6] = ["run", "linearize", "sensitivity", "optimize", "identify", "fmu"];
 
 /// The only scene beside the one that stands for the graph that a command asks for; none where it may ask for all.
 pub fn only_scene(command: &[String], options: &[OsString]) -> Option<String> {

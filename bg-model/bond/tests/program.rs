@@ -8,6 +8,9 @@ use std::time::Duration;
 
 use tempfile::TempDir;
 
+#[path = "program/optimize.rs"]
+mod optimize;
+
 /// What the program gives in a folder.
 fn bond(folder: &Path, line: &str) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_bond"));

@@ -9,6 +9,7 @@ use bg_model::nalgebra::DMatrix;
 use bg_workbench::Program;
 use bg_workbench::calls::{self, Asked, Ran, Started};
 use bg_workbench::inputs::Named;
+use bg_workbench::optimize;
 use bg_workbench::sweep::folder::{Folder, Kind};
 use bg_workbench::sweep::plan::Plan;
 use bg_workbench::sweep::{Outcome, Share, parquet, recipe, shown, sweep};
@@ -28,8 +29,18 @@ pyo3::create_exception!(
 );
 
 /// The functions that a module has.
-pub const FUNCTIONS: [&str; 9] =
-    ["run", "linearize", "sensitivity", "parameters", "scenes", "outputs", "sweep", "sweep_shards", "read_sweep"];
+pub const FUNCTIONS: [&str; 10] = [
+    "run",
+    "linearize",
+    "sensitivity",
+    "optimize",
+    "parameters",
+    "scenes",
+    "outputs",
+    "sweep",
+    "sweep_shards",
+    "read_sweep",
+];
 
 /// A plan, as a file or as text.
 enum Source {
@@ -234,6 +245,47 @@ impl Model {
         Table::new(py, std::iter::once(t).chain(courses), info)
     }
 
+    /// Find the parameters with which a number of a run is least or largest, by exact derivatives.
+    ///
+    /// `minimize` and `maximize` are numbers such as "max |pin.force|", `subject` what has to be fulfilled, such as
+    /// "mean(speed) > 30"; `by` are names, each with bounds where they are narrower, "length=0.5..0.9". Two goals give
+    /// their front in `points`. Gives a dict: `best`, `searches` and `front`, each with `parameters`, `goals`, `subjects`,
+    /// `feasible`, `converged`, `end`; `trials`, a table of all runs. Raises ValueError where nothing can be sought.
+    #[pyo3(signature = (scene=None, *, minimize=None, maximize=None, subject=None, by=None, starts=1, points=9, steps=50, threads=0, t_end=None, step=None, method=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn optimize<'py>(
+        &self,
+        py: Python<'py>,
+        scene: Option<String>,
+        minimize: Option<Texts>,
+        maximize: Option<Texts>,
+        subject: Option<Texts>,
+        by: Option<Texts>,
+        starts: u32,
+        points: u32,
+        steps: u64,
+        threads: usize,
+        t_end: Option<f64>,
+        step: Option<f64>,
+        method: Option<&str>,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut asked = asked(scene, set, inputs, "model", parameters)?;
+        integrated(&mut asked, t_end, step, method, rtol, atol)?;
+        let [minimize, maximize, subject, by] =
+            [minimize, maximize, subject, by].map(|texts| texts.map_or_else(Vec::new, Texts::all));
+        let goals = optimize::Asked { minimize, maximize, subject, by, starts, points, steps, threads };
+        let found = interruptible(py, |goes_on| calls::optimize(&(self.program)(), &asked, &goals, goes_on))?;
+        let (sought, found) = found.map_err(refused)?;
+        let told = py.import("json")?.call_method1("loads", (optimize::report::json(&sought, &found).to_string(),))?;
+        told.set_item("trials", of_parquet(py, optimize::report::trials(&sought, &found), PyDict::new(py))?)?;
+        Ok(told)
+    }
+
     /// The parameters by name, each a dict of default, unit, lower and upper end of its range, doc; those of a scene,
     /// or all.
     #[pyo3(signature = (scene=None))]
@@ -312,21 +364,42 @@ impl Model {
             Ok((table, folder.recipe().to_owned()))
         };
         let (table, recipe) = py.detach(read).map_err(PyValueError::new_err)?;
-        let units = table.texts.iter().find(|(name, _)| name == "units").map(|(_, text)| text.as_str());
-        let units: BTreeMap<String, String> = serde_json::from_str(units.unwrap_or("{}")).unwrap_or_default();
-        let columns = table.columns.into_iter().map(|parquet::Column { name, values }| {
-            let unit = units.get(&name).cloned().unwrap_or_default();
-            let values = match values {
-                parquet::Values::Real(values) => Values::Real(values),
-                parquet::Values::Whole(values) => Values::Whole(values),
-                parquet::Values::Text(values) => Values::Text(values),
-            };
-            (name, unit, values)
-        });
         let info = PyDict::new(py);
         info.set_item("sweep", recipe)?;
-        Table::new(py, columns, info)
+        of_parquet(py, table, info)
     }
+}
+
+/// A text, or several.
+#[derive(FromPyObject)]
+enum Texts {
+    One(String),
+    Several(Vec<String>),
+}
+
+impl Texts {
+    fn all(self) -> Vec<String> {
+        match self {
+            Self::One(text) => vec![text],
+            Self::Several(texts) => texts,
+        }
+    }
+}
+
+/// A table with the units that its metadata have.
+fn of_parquet(py: Python<'_>, table: parquet::Table, info: Bound<'_, PyDict>) -> PyResult<Table> {
+    let units = table.texts.iter().find(|(name, _)| name == "units").map(|(_, text)| text.as_str());
+    let units: BTreeMap<String, String> = serde_json::from_str(units.unwrap_or("{}")).unwrap_or_default();
+    let columns = table.columns.into_iter().map(|parquet::Column { name, values }| {
+        let unit = units.get(&name).cloned().unwrap_or_default();
+        let values = match values {
+            parquet::Values::Real(values) => Values::Real(values),
+            parquet::Values::Whole(values) => Values::Whole(values),
+            parquet::Values::Text(values) => Values::Text(values),
+        };
+        (name, unit, values)
+    });
+    Table::new(py, columns, info)
 }
 
 /// A plan from a path or a dict.

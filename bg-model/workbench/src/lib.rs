@@ -64,6 +64,7 @@
 //! | [`sensitivity`] | which parameter moves which output |
 //! | [`gradient`] | how one number of a run depends on all parameters |
 //! | [`identify`] | which parameters come nearest to what was measured |
+//! | [`optimize`] | which parameters make a number of a run least |
 //! | [`summary`] | what a run results in, in numbers |
 //! | [`page`] | all of it on one page that needs nothing else, in motion where there is a machine |
 //! | [`live`] | the same with the model inside, so that the page can run it again |
@@ -103,7 +104,7 @@ pub use show::{extras, figures, markup, page, picture};
 pub use show::{output, shown, tables};
 pub use studies::precision;
 #[cfg(not(target_arch = "wasm32"))]
-pub use studies::{golden, gradient, identify, sensitivity, sweep};
+pub use studies::{golden, gradient, identify, optimize, sensitivity, sweep};
 
 #[doc = include_str!("../cookbook.md")]
 pub mod cookbook {}

@@ -9,7 +9,7 @@
 mod data;
 pub mod fit;
 mod noise;
-mod search;
+pub(crate) mod search;
 
 use bg_model::description::ParameterInfo;
 use bg_model::mechanism::Followed;
@@ -46,21 +46,21 @@ impl Variable {
     }
 
     /// What is fitted, for a value of the parameter.
-    fn inner(&self, value: f64) -> f64 {
+    pub(crate) fn inner(&self, value: f64) -> f64 {
         if self.is_logarithmic() { value.ln() } else { value }
     }
 
-    fn outer(&self, inner: f64) -> f64 {
+    pub(crate) fn outer(&self, inner: f64) -> f64 {
         if self.is_logarithmic() { inner.exp() } else { inner }
     }
 
     /// The derivative of the parameter by what is fitted.
-    fn slope(&self, value: f64) -> f64 {
+    pub(crate) fn slope(&self, value: f64) -> f64 {
         if self.is_logarithmic() { value } else { 1.0 }
     }
 
     /// What steps of it are measured with.
-    fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         if self.is_logarithmic() || self.start == 0.0 { 1.0 } else { self.start.abs() }
     }
 }

@@ -68,7 +68,7 @@ fn moved(variable: &Variable, way: f64) -> Variable {
 
 /// A number between -1 and 1, the first one 0: the digits of `number` in a base, after the point and in reverse, less
 /// one half.
-fn halton(number: u32, base: u32) -> f64 {
+pub(crate) fn halton(number: u32, base: u32) -> f64 {
     if number == 0 {
         return 0.0;
     }

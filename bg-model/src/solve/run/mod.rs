@@ -229,11 +229,10 @@ struct Integration<'a> {
 }
 
 /// Makes a run of `model` from its start as it is asked for, with another observer.
-pub(crate) fn observed(
-    model: &dyn Machine,
-    request: &Request,
-    observer: &mut dyn Observer,
-) -> Result<Trajectory, RunError> {
+///
+/// # Errors
+/// The start cannot be assembled, or the run stops before its end.
+pub fn observed(model: &dyn Machine, request: &Request, observer: &mut dyn Observer) -> Result<Trajectory, RunError> {
     let each_step = Box::new(|_| ControlFlow::Continue(()));
     let request = request.clone();
     Integration { request, start: None, each_step, ending: None }.recorded(model, Some(observer))

@@ -5,9 +5,9 @@
 
 use std::rc::Rc;
 
-use super::jump::jumped;
+use super::jump::{Jump, jumped};
 use super::step::{Steps, set_values};
-use super::{Direction, SensitivityError};
+use super::{AtEvent, Direction, SensitivityError};
 use crate::model::assembly::AssemblyError;
 use crate::model::dynamics::Machine;
 use crate::model::scalar::slopes::WIDTH;
@@ -41,6 +41,29 @@ struct Part {
     begin: Vec<Gradient>,
     /// For each direction and output the derivatives at the samples.
     slopes: Vec<Vec<Vec<f64>>>,
+    /// What the outputs are at each event, along these directions.
+    events: Vec<AtEvent>,
+}
+
+impl Part {
+    /// Keeps the outputs on both sides of an event.
+    fn keep(&mut self, jump: &Jump, event: &Switching) {
+        let mut at_event = AtEvent { t: event.before.t, values: [const { Vec::new() }; 2], slopes: Vec::new() };
+        let directions = self.slopes.len();
+        let sides = jump.at_event.iter().zip([&event.negative_before, &event.negative_after]);
+        let mut slopes = vec![[const { Vec::new() }; 2]; directions];
+        for (side, (x, negative)) in sides.enumerate() {
+            let mut outputs = vec![Gradient::from_f64(0.0); self.system.description().outputs.len()];
+            self.system.outputs(jump.t, x, negative, &mut outputs);
+            at_event.values[side] = outputs.iter().map(|output| output.value).collect();
+            for (l, of) in slopes.iter_mut().enumerate() {
+                of[side] = outputs.iter().map(|output| output.slopes()[l]).collect();
+            }
+        }
+        let of = |(l, outputs)| super::AlongEvent { instant: jump.t.slopes()[l], outputs };
+        at_event.slopes = slopes.into_iter().enumerate().map(of).collect();
+        self.events.push(at_event);
+    }
 }
 
 impl Follower {
@@ -66,7 +89,12 @@ impl Follower {
                     begin[*state] = Gradient::new(begin[*state].value, slopes);
                 }
             }
-            Ok(Part { system, begin, slopes: vec![vec![Vec::new(); outputs_of_all]; directions.len()] })
+            Ok(Part {
+                system,
+                begin,
+                slopes: vec![vec![Vec::new(); outputs_of_all]; directions.len()],
+                events: Vec::new(),
+            })
         };
         let parts = systems.into_iter().zip(directions.chunks(WIDTH)).map(part).collect::<Result<_, _>>()?;
         Ok(Self {
@@ -109,6 +137,16 @@ impl Follower {
             (0..part.slopes.len()).map(of).collect::<Vec<_>>()
         };
         self.parts.iter().enumerate().flat_map(of_part).collect()
+    }
+
+    /// What the outputs are at each event.
+    pub fn events(&self) -> Vec<AtEvent> {
+        let mut parts = self.parts.iter();
+        let mut all = parts.next().map_or_else(Vec::new, |part| part.events.clone());
+        for part in parts {
+            all.iter_mut().zip(&part.events).for_each(|(at, other)| at.slopes.extend_from_slice(&other.slopes));
+        }
+        all
     }
 
     /// For each direction and output the derivatives at the samples.
@@ -171,15 +209,16 @@ impl Observer for Follower {
         if self.error.is_some() {
             return;
         }
-        for (place, Part { system, .. }) in self.parts.iter().enumerate() {
+        for (place, part) in self.parts.iter_mut().enumerate() {
             let now = self.steps.now(place, switching.before.x.as_slice());
-            let Some(after) = jumped(&**system, &*self.plain, &now, switching) else {
+            let Some(jump) = jumped(&*part.system, &*self.plain, &now, switching) else {
                 let switch = switching.reached.iter().position(|&reached| reached).unwrap_or_default();
-                let name = system.switch_name(switch).unwrap_or("a switch");
+                let name = part.system.switch_name(switch).unwrap_or("a switch");
                 self.error = Some(SensitivityError::Grazes { switch: name, t: switching.before.t });
                 return;
             };
-            self.steps.set(place, &after);
+            part.keep(&jump, switching);
+            self.steps.set(place, &jump.after);
         }
     }
 

@@ -14,6 +14,16 @@ use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
 use crate::solve::simulation::Switching;
 
+/// What an event does to slopes.
+pub(super) struct Jump {
+    /// The state after it, with its slopes there at a fixed time.
+    pub after: Vec<Gradient>,
+    /// The instant with its slopes.
+    pub t: Gradient,
+    /// The states before and after it, with the slopes that they have at the instant of the event, wherever that moves.
+    pub at_event: [Vec<Gradient>; 2],
+}
+
 /// The slopes after the event of the state `x`, which has its value before it; `plain` is the same system with slopes
 /// of nothing. None where no guard passes through zero with a speed: the derivative does not exist there.
 pub(super) fn jumped(
@@ -21,20 +31,22 @@ pub(super) fn jumped(
     plain: &dyn Dynamics<Gradient>,
     x: &[Gradient],
     event: &Switching,
-) -> Option<Vec<Gradient>> {
+) -> Option<Jump> {
     let Switching { before, after, jumps, .. } = event;
-    let after_with = |slope: &dyn Fn(usize) -> [f64; WIDTH]| {
-        after.x.iter().enumerate().map(|(i, &value)| Gradient::new(value, slope(i))).collect()
-    };
-    if !jumps && before.rate == after.rate {
-        return Some(after_with(&|i| x[i].slopes()));
-    }
-    let delays = delays(system, plain, x, event)?;
+    let delays = delays(system, plain, x, event);
+    let is_smooth = !jumps && before.rate == after.rate;
+    // Where nothing changes but outputs the slopes do not need the instant.
+    let delays = if is_smooth { delays.unwrap_or_default() } else { delays? };
+    let t = Gradient::new(before.t, delays);
     let along = |rate: &DVector<f64>, i: usize, l: usize| rate[i] * delays[l];
     let at_event = |i: usize| std::array::from_fn(|l| x[i].slopes()[l] + along(&before.rate, i, l));
-    let moved: Vec<_> = (0..x.len()).map(|i| Gradient::new(before.x[i], at_event(i))).collect();
-    let moved = struck(system, event, Gradient::new(before.t, delays), moved);
-    Some(after_with(&|i| std::array::from_fn(|l| moved[i].slopes()[l] - along(&after.rate, i, l))))
+    let reached: Vec<_> = (0..x.len()).map(|i| Gradient::new(before.x[i], at_event(i))).collect();
+    let left = struck(system, event, t, reached.clone());
+    let slope = |i: usize| {
+        if is_smooth { x[i].slopes() } else { std::array::from_fn(|l| left[i].slopes()[l] - along(&after.rate, i, l)) }
+    };
+    let after = after.x.iter().enumerate().map(|(i, &value)| Gradient::new(value, slope(i))).collect();
+    Some(Jump { after, t, at_event: [reached, left] })
 }
 
 /// How much later the event is, s per unit of each direction.

@@ -118,6 +118,8 @@ pub struct Sensitivities {
     pub directions: Vec<Direction>,
     /// The derivatives of the states at the end, for each direction; in the state's unit per the direction's.
     pub states: Vec<Vec<f64>>,
+    /// The outputs at each event, in the order of time.
+    pub events: Vec<AtEvent>,
     slopes: Vec<Vec<Vec<f64>>>,
 }
 
@@ -131,6 +133,27 @@ impl Sensitivities {
     pub fn of(&self, direction: usize, output: usize) -> &[f64] {
         &self.slopes[direction][output]
     }
+}
+
+/// The outputs on both sides of an event, with the derivatives that they have there wherever the event moves to: those
+/// of a value that is largest where branches change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AtEvent {
+    /// The instant, s.
+    pub t: f64,
+    /// The values of the outputs before and after it, each in its unit.
+    pub values: [Vec<f64>; 2],
+    /// The derivatives along each direction.
+    pub slopes: Vec<AlongEvent>,
+}
+
+/// What an event is along one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AlongEvent {
+    /// The derivative of the instant, s per the direction's unit.
+    pub instant: f64,
+    /// The derivatives of the outputs before and after it, in the output's unit per the direction's.
+    pub outputs: [Vec<f64>; 2],
 }
 
 /// Derivatives that could not be had.
@@ -272,8 +295,16 @@ impl Following<'_> {
         followers.iter_mut().try_for_each(Follower::check)?;
         let trajectory = outcome?;
         let states = followers.iter().flat_map(Follower::states).collect();
+        let mut events: Vec<AtEvent> = Vec::new();
+        for more in followers.iter().map(Follower::events) {
+            if events.is_empty() {
+                events = more;
+            } else {
+                events.iter_mut().zip(more).for_each(|(at, other)| at.slopes.extend(other.slopes));
+            }
+        }
         let slopes = followers.into_iter().flat_map(Follower::slopes).collect();
-        Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, slopes })
+        Ok(Sensitivities { trajectory, directions: self.directions.to_vec(), states, events, slopes })
     }
 
     /// The size of a direction: the change of it by which a slope may move a state as far from the truth as a step may.

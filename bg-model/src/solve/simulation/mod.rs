@@ -25,7 +25,7 @@ use nalgebra::{DVector, SVector};
 
 pub use observer::{EachSample, EachStep, Inside, Observer, Switching};
 pub use ongoing::Ongoing;
-pub use peaks::{Peak, PeakMonitor, Peaks};
+pub use peaks::{Peak, PeakMonitor, Peaks, Watched};
 pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 #[cfg(feature = "std")]

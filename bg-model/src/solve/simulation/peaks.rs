@@ -1,7 +1,8 @@
-//! The least and the largest value of each output over a run, between the samples as well.
+//! The least and the largest value of each output over a run, between the samples as well; or of other functions of the
+//! state.
 //!
 //! In: the steps of a run, with the states inside of them. Out: for each output two values with their instants, over the
-//! whole run and from an instant on. They depend on the steps alone, not on the samples.
+//! whole run and from an instant on, or over given windows of time. They depend on the steps alone, not on the samples.
 //!
 //! Method: the outputs at the end of each step and at the two ends before show how they bend. Where an output may turn in
 //! the step, and beyond what is known so far, its slopes at both ends give a cubic. Where that leads beyond what is known
@@ -61,11 +62,54 @@ impl Peaks {
     }
 }
 
+/// Functions of time and state whose peaks are looked for, other than the outputs themselves.
+pub trait Watched {
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// How many states there are.
+    fn states(&self) -> usize;
+
+    /// Writes their values at `t` (s), the state `x` and the branches `negative` into `values`; allocates nothing.
+    fn values(&self, t: f64, x: &[f64], negative: &[bool], values: &mut [f64]);
+}
+
+/// What peaks are looked for of.
+#[derive(Clone, Copy)]
+enum Source<'a> {
+    Outputs(&'a dyn Machine),
+    Others(&'a dyn Watched),
+}
+
+impl Source<'_> {
+    fn count(self) -> usize {
+        match self {
+            Self::Outputs(model) => model.description().outputs.len(),
+            Self::Others(watched) => watched.count(),
+        }
+    }
+
+    fn states(self) -> usize {
+        match self {
+            Self::Outputs(model) => model.states(),
+            Self::Others(watched) => watched.states(),
+        }
+    }
+
+    fn values(self, t: f64, x: &[f64], negative: &[bool], values: &mut [f64]) {
+        match self {
+            Self::Outputs(model) => model.outputs(t, x, negative, values),
+            Self::Others(watched) => watched.values(t, x, negative, values),
+        }
+    }
+}
+
 /// Over which time peaks are looked for.
 #[derive(Clone, Debug)]
 struct Window {
-    /// From this instant on, s.
+    /// From this instant on, s, and up to this one.
     from: f64,
+    to: f64,
     /// For each output the least and the largest value; infinity where none is known yet.
     least: Vec<f64>,
     largest: Vec<f64>,
@@ -74,14 +118,14 @@ struct Window {
 }
 
 impl Window {
-    fn new(from: f64, outputs: usize) -> Self {
+    fn new([from, to]: [f64; 2], outputs: usize) -> Self {
         let [least, largest] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| vec![end; outputs]);
-        Self { from, least, largest, at: vec![[from; 2]; outputs] }
+        Self { from, to, least, largest, at: vec![[from; 2]; outputs] }
     }
 
     /// Takes values at `t` (s) into account.
     fn take(&mut self, t: f64, values: &[f64]) {
-        if t < self.from {
+        if t < self.from || t > self.to {
             return;
         }
         let known = self.least.iter_mut().zip(&mut self.largest).zip(&mut self.at);
@@ -123,7 +167,7 @@ fn take(windows: &mut [Window], t: f64, values: &[f64]) {
 /// An observer that finds the peaks of a model's outputs. Allocates nothing in a step.
 #[derive(Clone)]
 pub struct PeakMonitor<'a> {
-    model: &'a dyn Machine,
+    of: Source<'a>,
     windows: Vec<Window>,
     past: Past,
     /// The outputs at the end of the part that is looked at, and which of them may turn in it beyond what is known.
@@ -186,18 +230,28 @@ impl<'a> PeakMonitor<'a> {
     /// That of a model: over the whole run, and from `settled` (s) on where that is given.
     #[must_use]
     pub fn new(model: &'a dyn Machine, settled: Option<f64>) -> Self {
-        let outputs = model.description().outputs.len();
-        let row = || vec![0.0; outputs];
-        let window = |from: f64| Window::new(from, outputs);
+        let from = core::iter::once(f64::NEG_INFINITY).chain(settled);
+        Self::over(Source::Outputs(model), from.map(|from| [from, f64::INFINITY]))
+    }
+
+    /// That of other functions than outputs, over these windows of time: from, s, and up to, s.
+    #[must_use]
+    pub fn within(watched: &'a dyn Watched, windows: &[[f64; 2]]) -> Self {
+        Self::over(Source::Others(watched), windows.iter().copied())
+    }
+
+    fn over(of: Source<'a>, windows: impl Iterator<Item = [f64; 2]>) -> Self {
+        let count = of.count();
+        let row = || vec![0.0; count];
         Self {
-            model,
-            windows: core::iter::once(f64::NEG_INFINITY).chain(settled).map(window).collect(),
+            of,
+            windows: windows.map(|window| Window::new(window, count)).collect(),
             past: Past { known: 0, values: row(), before: row(), h: 0.0 },
             to: row(),
-            may_turn: vec![false; outputs],
+            may_turn: vec![false; count],
             slopes: [row(), row()],
             middle: row(),
-            x: vec![0.0; model.states()],
+            x: vec![0.0; of.states()],
             row: row(),
         }
     }
@@ -211,7 +265,13 @@ impl<'a> PeakMonitor<'a> {
     /// The same from the instant on that was given; none of a run that has not come there.
     #[must_use]
     pub fn settled(&self, index: usize) -> Option<Peaks> {
-        self.windows.get(1)?.peaks(index)
+        self.peaks_in(1, index)
+    }
+
+    /// The peaks of output `index` in window `window`; none of a run that has not come there.
+    #[must_use]
+    pub fn peaks_in(&self, window: usize, index: usize) -> Option<Peaks> {
+        self.windows.get(window)?.peaks(index)
     }
 
     /// Whether an output may turn in a part of `h` (s) that ends at `t` (s) in `to`, beyond what is known; marks which do.
@@ -225,7 +285,8 @@ impl<'a> PeakMonitor<'a> {
             *marked = change.abs() <= TURN * bend && {
                 let reach = BEYOND * bend;
                 let ends = [from.min(to) - reach, from.max(to) + reach];
-                let leads = |window: &Window| t >= window.from && window.leads(index, ends) != [false; 2];
+                let is_in = |window: &Window| t >= window.from && t - h <= window.to;
+                let leads = |window: &Window| is_in(window) && window.leads(index, ends) != [false; 2];
                 windows.iter().any(leads)
             };
             any |= *marked;
@@ -242,7 +303,7 @@ impl<'a> PeakMonitor<'a> {
     /// Evaluates the slopes of the outputs, which are `values`, at the part `theta` of a step: by a difference to a part
     /// before, or after at the start.
     fn slope(&mut self, step: &mut Inside<'_, '_>, theta: f64, is_end: bool) {
-        let Self { model, past, to, slopes, x, .. } = self;
+        let Self { of, past, to, slopes, x, .. } = self;
         let beside = if theta > 0.0 { -DIFFERENCE } else { DIFFERENCE };
         let t = if theta == 0.0 || theta == 1.0 {
             step.along_rate(theta == 1.0, beside, x)
@@ -250,9 +311,24 @@ impl<'a> PeakMonitor<'a> {
             step.state(theta + beside, x)
         };
         let (slopes, values) = (&mut slopes[usize::from(is_end)], if is_end { to } else { &past.values });
-        model.outputs(t, x, step.negative(), slopes);
+        of.values(t, x, step.negative(), slopes);
         let h = step.h() * beside;
         slopes.iter_mut().zip(values).for_each(|(slope, value)| *slope = (*slope - value) / h);
+    }
+
+    /// Takes the ends of windows inside of a step into account: the largest value of a window may be there.
+    fn take_ends(&mut self, step: &mut Inside<'_, '_>) {
+        let Self { of, windows, x, row, .. } = self;
+        for window in windows {
+            for t in [window.from, window.to] {
+                let part = step.part_at(t);
+                if part > 0.0 && part < 1.0 {
+                    step.state(part, x);
+                    of.values(t, x, step.negative(), row);
+                    window.take(t, row);
+                }
+            }
+        }
     }
 
     /// Looks for what is beyond the known inside of a part of a step, of the outputs that may turn.
@@ -260,24 +336,25 @@ impl<'a> PeakMonitor<'a> {
         let [low, high] = part;
         self.slope(step, low, false);
         self.slope(step, high, true);
-        let Self { model, windows, past, to, may_turn, slopes, middle, x, row } = self;
+        let Self { of, windows, past, to, may_turn, slopes, middle, x, row } = self;
         let half = 0.5 * (low + high);
         let t_half = if is_short { step.cubic(half, x) } else { step.state(half, x) };
-        model.outputs(t_half, x, step.negative(), middle);
+        of.values(t_half, x, step.negative(), middle);
         take(windows, step.time(high), to);
         let h = step.h() * (high - low);
         for place in 0..windows.len() {
-            let opens = step.part_at(windows[place].from);
-            if opens >= high {
+            let ends = [windows[place].from, windows[place].to];
+            let [opens, closes] = ends.map(|t| step.part_at(t));
+            if opens >= high || closes <= low {
                 continue;
             }
             if opens > low {
                 step.state(opens, x);
                 let t = windows[place].from;
-                model.outputs(t, x, step.negative(), row);
+                of.values(t, x, step.negative(), row);
                 windows[place].take(t, row);
             }
-            let part = [low.max(opens), high];
+            let part = [low.max(opens), high.min(closes)];
             for index in (0..row.len()).filter(|&index| may_turn[index]) {
                 let course = Course {
                     values: [past.values[index], to[index]],
@@ -292,11 +369,11 @@ impl<'a> PeakMonitor<'a> {
                 }
                 let mut at = |theta: f64| {
                     let t = step.state(theta, x);
-                    model.outputs(t, x, step.negative(), row);
+                    of.values(t, x, step.negative(), row);
                     take(windows, t, row);
                     row[index]
                 };
-                if part[0] == low && course.is_cubic(|u| at(low + u * (high - low))) {
+                if part == [low, high] && course.is_cubic(|u| at(low + u * (high - low))) {
                     continue;
                 }
                 for sign in [1.0, -1.0].into_iter().zip(leads).filter_map(|(sign, leads)| leads.then_some(sign)) {
@@ -400,7 +477,7 @@ impl Observer for PeakMonitor<'_> {
         if self.past.known == 0 {
             return true;
         }
-        self.model.outputs(t, x, negative, &mut self.to);
+        self.of.values(t, x, negative, &mut self.to);
         self.may_turn(t, h)
     }
 
@@ -411,9 +488,12 @@ impl Observer for PeakMonitor<'_> {
     fn inside(&mut self, step: &mut Inside<'_, '_>) {
         if self.past.known == 0 {
             let t = step.state(0.0, &mut self.x);
-            self.model.outputs(t, &self.x, step.negative(), &mut self.past.values);
+            self.of.values(t, &self.x, step.negative(), &mut self.past.values);
             take(&mut self.windows, t, &self.past.values);
             self.past.known = 1;
+        }
+        if matches!(self.of, Source::Others(_)) {
+            self.take_ends(step);
         }
         let parts = step.order().map_or(1.0, |order| libm::ceil(order / ORDER_OF_ONE).max(1.0));
         let h = step.h() / parts;
@@ -421,7 +501,7 @@ impl Observer for PeakMonitor<'_> {
         for k in 1..=(parts as u32) {
             let high = f64::from(k) / parts;
             let t = step.state(high, &mut self.x);
-            self.model.outputs(t, &self.x, step.negative(), &mut self.to);
+            self.of.values(t, &self.x, step.negative(), &mut self.to);
             if self.may_turn(t, h) {
                 self.search(step, [low, high], parts == 1.0);
             }
@@ -433,7 +513,7 @@ impl Observer for PeakMonitor<'_> {
     fn switched(&mut self, switching: &Switching) {
         self.past.known = 0;
         let Switching { after, negative_after, .. } = switching;
-        self.model.outputs(after.t, after.x.as_slice(), negative_after, &mut self.row);
+        self.of.values(after.t, after.x.as_slice(), negative_after, &mut self.row);
         take(&mut self.windows, after.t, &self.row);
     }
 }

@@ -12,6 +12,8 @@ use bg_analysis::identify::{Data, Identified, IdentifyError, Variable};
 #[cfg(not(target_arch = "wasm32"))]
 use bg_analysis::linear::linearise_at;
 use bg_analysis::linear::{Equilibrium, LinearError, StateSpace, equilibrium};
+#[cfg(not(target_arch = "wasm32"))]
+use bg_analysis::optimize::{Job, Minimum, OptimizeError, Task, Trial, minimum};
 use bg_model::description::Description;
 use bg_model::dynamics::{self, branches};
 use bg_model::extended::Accuracy;
@@ -87,6 +89,21 @@ pub trait Machine {
         _variables: &[Variable],
         _told: &mut dyn FnMut(&[f64], f64),
     ) -> Option<Result<Identified, IdentifyError>> {
+        None
+    }
+
+    /// What a search for the optimum that `job` asks for has found; `told` is told of each run, and says whether it goes
+    /// on.
+    ///
+    /// # Errors
+    /// As [`bg_analysis::optimize::minimum`].
+    #[cfg(not(target_arch = "wasm32"))]
+    fn minimum(
+        &self,
+        _task: &Task,
+        _job: &Job,
+        _told: &mut dyn FnMut(&Trial) -> ControlFlow<()>,
+    ) -> Option<Result<Minimum, OptimizeError>> {
         None
     }
 
@@ -238,6 +255,16 @@ impl<Mo: Followed + Liftable<DoubleDouble>> Machine for Studied<Mo> {
         told: &mut dyn FnMut(&[f64], f64),
     ) -> Option<Result<Identified, IdentifyError>> {
         Some(identify(&self.model, request, data, variables, told))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn minimum(
+        &self,
+        task: &Task,
+        job: &Job,
+        told: &mut dyn FnMut(&Trial) -> ControlFlow<()>,
+    ) -> Option<Result<Minimum, OptimizeError>> {
+        Some(minimum(&self.model, task, job, told))
     }
 
     #[cfg(not(target_arch = "wasm32"))]

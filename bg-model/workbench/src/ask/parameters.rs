@@ -255,6 +255,22 @@ fn measured(parameters: &Chosen, place: &str, name: &str, text: &str) -> Result<
     quantity(text, parameters.values.table()[index].unit).map_err(fault)
 }
 
+/// The bounds that `LOWER..UPPER` gives of a parameter, in its unit.
+///
+/// # Errors
+/// A sentence.
+pub fn bounds(info: &ParameterInfo, text: &str) -> Result<[f64; 2], String> {
+    let form = || format!("give it as {}=LOWER..UPPER, for example {}=1e3..1e5", info.name, info.name);
+    let (lower, upper) = text.split_once("..").ok_or_else(form)?;
+    let number = |text: &str| quantity(text.trim(), info.unit).map_err(|fault| format!("a bound {fault}"));
+    let [lower, upper] = [number(lower)?, number(upper)?];
+    if lower < upper && info.range.contains(lower) && info.range.contains(upper) {
+        Ok([lower, upper])
+    } else {
+        Err(format!("the lower bound must be below the upper one, and both {}", info.range))
+    }
+}
+
 fn set_from_toml(parameters: &mut Chosen, path: &Path, text: &str) -> Result<(), SettingError> {
     let entries: toml::Table = text.parse().map_err(|fault: toml::de::Error| {
         let [line, column] = place_of(&fault, text);

@@ -9,6 +9,7 @@ use clap_complete::Shell;
 
 use super::identify::IdentifyArguments;
 use super::methods::integrator;
+use super::optimize::OptimizeArguments;
 use super::sensitivity::SensitivityArguments;
 use super::sweep::SweepArguments;
 use crate::ask::request::Integration;
@@ -60,6 +61,9 @@ pub enum Command {
     Sensitivity(SensitivityArguments),
     /// Fit parameters to measured columns: values with confidence, correlations, what cannot be identified
     Identify(IdentifyArguments),
+    /// Find the parameters with which a number of a run is least, subject to others, by exact derivatives; of two
+    /// numbers their front
+    Optimize(OptimizeArguments),
     /// Run for many values of parameters by a plan, into Parquet files; on all cores, or on many machines
     Sweep(SweepArguments),
     /// Pack a scene as a functional mock-up unit for other programs: FMI 3.0 or 2.0, Model Exchange and Co-Simulation

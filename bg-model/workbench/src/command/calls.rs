@@ -17,6 +17,7 @@ use crate::ask::request::Integration;
 use crate::ask::scenes::Scene;
 use crate::program::Program;
 use crate::run::running::{Begin, follow};
+use crate::studies::optimize::{self, Optimum, Sought, Trial};
 use crate::studies::sensitivity::Course;
 use bg_analysis::linear::StateSpace;
 
@@ -142,6 +143,24 @@ pub fn sensitivity(
     let Given { scene, chosen, inputs } = given(program, asked)?;
     let (run, courses) = derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)?;
     Ok((Ran { run, failure: None, inputs }, courses))
+}
+
+/// The parameters with which what `goals` asks for is least or largest; `told` is asked after each run whether to go on.
+///
+/// # Errors
+/// It cannot be sought, or no search came about.
+pub fn optimize(
+    program: &Program,
+    asked: &Asked,
+    goals: &optimize::Asked,
+    told: &(dyn Fn() -> bool + Sync),
+) -> Result<(Sought, Optimum), Refused> {
+    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let Given { scene, chosen, .. } = given(program, asked)?;
+    let sought = optimize::sought(scene, &chosen.values, goals, &request, asked.integration.step).map_err(refused)?;
+    let each = |_: usize, _: &Trial| told();
+    let found = optimize::optimum(&program.models, scene, &chosen.values, &chosen.inputs, &sought, &each);
+    Ok((sought, found.map_err(refused)?))
 }
 
 /// What is written in JSON, as TOML.

@@ -15,6 +15,7 @@ use super::run::{chosen, machine, request};
 use super::sensitivity::{adjustable, observed, unknown};
 use super::{InputError, ended};
 use crate::ask::inputs;
+use crate::ask::parameters::bounds;
 use crate::ask::scenes::Scene;
 use crate::files::{FileError, RunFolder, console};
 use crate::program::Program;
@@ -119,18 +120,12 @@ fn bound(variables: &mut [Variable], text: &str, scene: &str) -> Result<(), Inpu
     let wrong = |fault: String| InputError::Unknown { option: "--bounds", fault: format!("{text}: {fault}") };
     let form = || wrong("give it as NAME=LOWER..UPPER, for example k=1e3..1e5".to_owned());
     let (name, range) = text.split_once('=').ok_or_else(form)?;
-    let (lower, upper) = range.split_once("..").ok_or_else(form)?;
-    let number = |text: &str| text.trim().parse::<f64>().map_err(|_| form());
-    let (lower, upper) = (number(lower)?, number(upper)?);
     let names: Vec<&'static str> = variables.iter().map(|of| of.info.name).collect();
     let found = variables.iter_mut().find(|of| of.info.name == name.trim());
     let Some(variable) = found else {
         return Err(unknown("--bounds", "parameter", name.trim(), scene, names.into_iter()));
     };
-    let range = &variable.info.range;
-    if !(lower < upper && range.contains(lower) && range.contains(upper)) {
-        return Err(wrong(format!("the lower bound must be below the upper one, and both {range}")));
-    }
+    let [lower, upper] = bounds(variable.info, range).map_err(wrong)?;
     if !(lower..=upper).contains(&variable.start) {
         return Err(wrong(format!("`{}` starts at {}; start inside with --set", variable.info.name, variable.start)));
     }

@@ -17,6 +17,7 @@ mod identify;
 mod linearize;
 pub mod manual;
 mod methods;
+mod optimize;
 mod precision;
 mod progress;
 mod report;
@@ -55,6 +56,7 @@ use crate::show::tables;
 use crate::studies::golden::GoldenError;
 use crate::studies::identify::IdentifyError;
 use crate::studies::identify::data::Unusable;
+use crate::studies::optimize::AskedError;
 use crate::studies::precision::measure::MeasureError;
 use crate::studies::sweep::SweepError;
 use arguments::{Cli, Command, GoldenCommand};
@@ -113,6 +115,8 @@ enum InputError {
     Sensitivity(#[from] SensitivityError),
     #[error(transparent)]
     Identify(#[from] IdentifyError),
+    #[error(transparent)]
+    Optimize(#[from] AskedError),
     #[error(transparent)]
     Data(#[from] Unusable),
     #[error(transparent)]
@@ -196,6 +200,7 @@ fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
         Command::Sweep(arguments) => sweep::obey(program, &arguments),
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Identify(arguments) => identify::identify(program, &arguments),
+        Command::Optimize(arguments) => optimize::optimize(program, &arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.models.scenes))),
         Command::Scene { scene: Some(name) } => {

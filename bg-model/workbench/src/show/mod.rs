@@ -8,6 +8,8 @@ pub mod output;
 pub mod page;
 pub mod picture;
 #[cfg(not(target_arch = "wasm32"))]
+pub mod sheet;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod shown;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod tables;

@@ -1,4 +1,4 @@
-//! More than one run: sweeps, derivatives, fits, recorded runs made again, errors and what they cost.
+//! More than one run: sweeps, derivatives, fits, optima, recorded runs made again, errors and what they cost.
 
 #[cfg(not(target_arch = "wasm32"))]
 pub mod golden;
@@ -6,6 +6,8 @@ pub mod golden;
 pub mod gradient;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod identify;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod optimize;
 pub mod precision;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod sensitivity;

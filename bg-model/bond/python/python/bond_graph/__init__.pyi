@@ -100,6 +100,31 @@ class Model:
     ) -> Table:
         """A column ``d(output)/d(parameter)`` over the run for each of the outputs and each parameter in ``by``."""
 
+    def optimize(
+        self,
+        scene: str | None = None,
+        *,
+        minimize: str | Sequence[str] | None = None,
+        maximize: str | Sequence[str] | None = None,
+        subject: str | Sequence[str] | None = None,
+        by: str | Sequence[str] | None = None,
+        starts: int = 1,
+        points: int = 9,
+        steps: int = 50,
+        threads: int = 0,
+        t_end: float | None = None,
+        step: float | None = None,
+        method: str | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> dict[str, Any]:
+        """The parameters in ``by`` with which a number such as ``"max |pin.force|"`` is least or largest.
+
+        ``best``, ``searches`` and the ``front`` of two goals, each a dict; ``trials`` a table of all runs."""
+
     def parameters(self, scene: str | None = None) -> dict[str, Parameter]:
         """The parameters by name; those of a scene, or all."""
 
