@@ -7,4 +7,6 @@ pub mod linear;
 pub mod npz;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod optimize;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod spectrum;
 pub mod thinning;

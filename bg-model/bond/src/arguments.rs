@@ -98,9 +98,10 @@ pub struct Call {
 }
 
 /// The workbench's commands on a file, each with what it does.
-const COMMANDS: [(&str, &str); 13] = [
+const COMMANDS: [(&str, &str); 14] = [
     ("run", "Runs a model: a summary, and files with its outputs and figures"),
     ("report", "Runs it and writes one page: motion, charts, the graph"),
+    ("plot", "Draws outputs over time, against each other, as spectra"),
     ("graph", "Prints or draws the bond graph, its states, equations and operations"),
     ("linearize", "Linear model, modes and frequency responses"),
     ("sweep", "Many runs by a plan"),
@@ -244,7 +245,7 @@ fn call(command: &[&str], mut words: impl Iterator<Item = OsString>) -> Result<A
 }
 
 /// The commands that ask for one scene.
-const OF_ONE_SCENE: [&str; 6] = ["run", "linearize", "sensitivity", "optimize", "identify", "fmu"];
+const OF_ONE_SCENE: [&str; 7] = ["run", "plot", "linearize", "sensitivity", "optimize", "identify", "fmu"];
 
 /// The only scene beside the one that stands for the graph that a command asks for; none where it may ask for all.
 pub fn only_scene(command: &[String], options: &[OsString]) -> Option<String> {

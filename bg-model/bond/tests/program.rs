@@ -10,6 +10,8 @@ use tempfile::TempDir;
 
 #[path = "program/optimize.rs"]
 mod optimize;
+#[path = "program/plot.rs"]
+mod plot;
 
 /// What the program gives in a folder.
 fn bond(folder: &Path, line: &str) -> Output {

@@ -66,6 +66,9 @@ pub enum CriterionError {
     /// A function of time where a number has to be.
     #[error("`{0}` changes with time: say which number of it counts, as in max(..), mean(..) or final(..)")]
     Signal(String),
+    /// A number of a whole run where a function of time has to be.
+    #[error("`{0}` is one number of a whole run, and here a course over time is wanted: leave its measures out")]
+    NoCourse(String),
     /// A number where a function of time has to be.
     #[error("`{name}` is of what changes with time, and here is none: give it an output")]
     NoSignal {
@@ -159,6 +162,11 @@ impl Kind {
         matches!(self, Self::Max | Self::Min | Self::Range | Self::TimeOfMax | Self::TimeOfMin)
     }
 
+    /// Whether it is made from all samples of its window.
+    pub const fn is_over_time(self) -> bool {
+        matches!(self, Self::Mean | Self::Rms | Self::Deviation | Self::Integral | Self::Crossings(_))
+    }
+
     /// Whether it has derivatives by parameters.
     pub const fn has_derivatives(self) -> bool {
         !matches!(self, Self::TimeOfMax | Self::TimeOfMin | Self::Crossings(_))
@@ -197,6 +205,67 @@ impl Criterion {
     pub fn shown(&self, value: f64) -> f64 {
         self.unit.unit.from_si(value)
     }
+}
+
+/// A function of time that a run gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Signal {
+    /// As it was written.
+    pub text: String,
+    node: Node,
+    unit: Shown,
+}
+
+impl Signal {
+    /// The unit that it is shown in.
+    #[must_use]
+    pub fn unit(&self) -> &str {
+        &self.unit.text
+    }
+
+    /// The outputs that it reads, by their places, ascending.
+    #[must_use]
+    pub fn outputs(&self) -> Vec<usize> {
+        outputs_of(std::iter::once(&self.node))
+    }
+
+    /// Its values in that unit at `times` (s), of a model with these values of its parameters; `column` has the values of
+    /// an output there, of those that it reads.
+    pub fn values<'a>(
+        &self,
+        model: &Description,
+        parameters: &[f64],
+        times: &[f64],
+        column: impl Fn(usize) -> &'a [f64],
+    ) -> Vec<f64> {
+        let parameters: Vec<f64> =
+            parameters.iter().zip(model.parameters).map(|(value, info)| value * size(info)).collect();
+        let read: Vec<(usize, Unit, &[f64])> = self
+            .outputs()
+            .into_iter()
+            .map(|place| {
+                (place, Shown::of(model.outputs[place].unit).map_or(Unit::ONE, |shown| shown.unit), column(place))
+            })
+            .collect();
+        let mut outputs = vec![0.0; model.outputs.len()];
+        let at = |(row, &t): (usize, &f64)| {
+            read.iter().for_each(|(place, unit, values)| outputs[*place] = unit.in_si(values[row]));
+            let leaves = Leaves { t, outputs: &outputs, parameters: &parameters, measures: &[], pieces: &[] };
+            self.unit.unit.from_si(self.node.value(&leaves))
+        };
+        times.iter().enumerate().map(at).collect()
+    }
+}
+
+/// The outputs that these trees read, ascending.
+fn outputs_of<'a>(nodes: impl Iterator<Item = &'a Node>) -> Vec<usize> {
+    let mut places = Vec::new();
+    for node in nodes {
+        node.each(&mut |node| places.extend(if let Node::Output(place) = node { Some(*place) } else { None }));
+    }
+    places.sort_unstable();
+    places.dedup();
+    places
 }
 
 /// What two numbers of a run have to fulfil.
@@ -239,6 +308,16 @@ impl Criteria {
     pub fn criterion(&mut self, text: &str) -> Result<Criterion, CriterionError> {
         let node = Reader::new(text, self.model, &mut self.measures)?.number()?;
         self.of_node(text, node)
+    }
+
+    /// The function of time that a text asks for.
+    ///
+    /// # Errors
+    /// [`CriterionError`].
+    pub fn signal(&mut self, text: &str) -> Result<Signal, CriterionError> {
+        let node = Reader::new(text, self.model, &mut self.measures)?.signal()?;
+        let unit = self.unit(&node)?.unwrap_or_else(Shown::number);
+        Ok(Signal { text: text.trim().to_owned(), node, unit })
     }
 
     /// The comparison that a text asks for. A bare number is in the unit of the other side.
@@ -296,15 +375,7 @@ impl Criteria {
     /// The outputs that the signals of all measures read, ascending.
     #[must_use]
     pub fn outputs(&self) -> Vec<usize> {
-        let mut places = Vec::new();
-        for measure in &self.measures {
-            measure
-                .signal
-                .each(&mut |node| places.extend(if let Node::Output(place) = node { Some(*place) } else { None }));
-        }
-        places.sort_unstable();
-        places.dedup();
-        places
+        outputs_of(self.measures.iter().map(|measure| &measure.signal))
     }
 
     /// The value of a criterion, in coherent SI.

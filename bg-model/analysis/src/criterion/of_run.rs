@@ -87,7 +87,8 @@ impl Look {
     /// # Errors
     /// A criterion asks for a time after that.
     pub fn new(criteria: Criteria, step: f64, t_end: f64) -> Result<Self, Outside> {
-        let mut rows = sample_times(0.0, step, t_end);
+        let is_over_time = criteria.measures.iter().any(|measure| measure.kind.is_over_time());
+        let mut rows = if is_over_time { sample_times(0.0, step, t_end) } else { vec![0.0, t_end] };
         let (mut windows, mut of_peaks) = (Vec::new(), Vec::new());
         for measure in &criteria.measures {
             let [from, to] = measure.window.unwrap_or([0.0, t_end]);

@@ -88,6 +88,18 @@ impl<'a> Reader<'a> {
         self.is_number(node)
     }
 
+    /// A function of time, without measures.
+    ///
+    /// # Errors
+    /// It is none.
+    pub fn signal(mut self) -> Found<Node> {
+        let node = self.sum()?;
+        self.end()?;
+        let mut has_measure = false;
+        node.each(&mut |node| has_measure |= matches!(node, Node::Measure(_)));
+        if has_measure { Err(CriterionError::NoCourse(self.text.trim().to_owned())) } else { Ok(node) }
+    }
+
     /// Two numbers that are compared.
     ///
     /// # Errors

@@ -7,6 +7,8 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 
 #[cfg(not(target_arch = "wasm32"))]
+use bg_analysis::criterion::of_run::{Found, Look, Slopes};
+#[cfg(not(target_arch = "wasm32"))]
 use bg_analysis::identify::identify;
 use bg_analysis::identify::{Data, Identified, IdentifyError, Variable};
 #[cfg(not(target_arch = "wasm32"))]
@@ -89,6 +91,20 @@ pub trait Machine {
         _variables: &[Variable],
         _told: &mut dyn FnMut(&[f64], f64),
     ) -> Option<Result<Identified, IdentifyError>> {
+        None
+    }
+
+    /// What is known of a run from its own start for some criteria, with the slopes of these by the parameters called `by`.
+    ///
+    /// # Errors
+    /// As [`Machine::sensitivities`].
+    #[cfg(not(target_arch = "wasm32"))]
+    fn looked(
+        &self,
+        _look: &Look,
+        _request: &Request,
+        _by: &[&str],
+    ) -> Option<Result<(Found, Slopes), SensitivityError>> {
         None
     }
 
@@ -255,6 +271,17 @@ impl<Mo: Followed + Liftable<DoubleDouble>> Machine for Studied<Mo> {
         told: &mut dyn FnMut(&[f64], f64),
     ) -> Option<Result<Identified, IdentifyError>> {
         Some(identify(&self.model, request, data, variables, told))
+    }
+
+    #[cfg(not(target_arch = "wasm32"))]
+    fn looked(&self, look: &Look, request: &Request, by: &[&str]) -> Option<Result<(Found, Slopes), SensitivityError>> {
+        let made = || {
+            let (values, by) = (self.model.values(), directions(self.model.description(), by)?);
+            let found = look.run(&*self.over_slices, &values, request)?;
+            let slopes = look.slopes(&self.model, &values, request, &by, &found)?;
+            Ok((found, slopes))
+        };
+        Some(made())
     }
 
     #[cfg(not(target_arch = "wasm32"))]

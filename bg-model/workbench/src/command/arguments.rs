@@ -10,6 +10,7 @@ use clap_complete::Shell;
 use super::identify::IdentifyArguments;
 use super::methods::integrator;
 use super::optimize::OptimizeArguments;
+use super::plot::PlotArguments;
 use super::sensitivity::SensitivityArguments;
 use super::sweep::SweepArguments;
 use crate::ask::request::Integration;
@@ -44,6 +45,8 @@ pub enum Command {
     /// Run the mechanism and write one HTML file that shows it: in motion, in charts, as a graph, with equations and
     /// parameters
     Report(ReportArguments),
+    /// Draw outputs of a run over time, against each other, or as a spectrum
+    Plot(PlotArguments),
     /// List the scenes, or say what a scene left out of the literal model and why
     Scene {
         /// The scene to report on; without it, one line for each

@@ -18,6 +18,7 @@ mod linearize;
 pub mod manual;
 mod methods;
 mod optimize;
+mod plot;
 mod precision;
 mod progress;
 mod report;
@@ -201,6 +202,7 @@ fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Identify(arguments) => identify::identify(program, &arguments),
         Command::Optimize(arguments) => optimize::optimize(program, &arguments),
+        Command::Plot(arguments) => plot::plot(program, &arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),
         Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.models.scenes))),
         Command::Scene { scene: Some(name) } => {

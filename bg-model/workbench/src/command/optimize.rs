@@ -15,7 +15,6 @@ use crate::program::Program;
 use crate::show::figures::FigureError;
 use crate::show::output::OutputError;
 use crate::studies::optimize::{Asked, Optimum, POINTS, STEPS, Sought, Trial, optimum, report, sought};
-use crate::studies::sweep::shown::csv_of;
 
 const TEXT: &str = "optimize.txt";
 const PAGE: &str = "index.html";
@@ -149,12 +148,12 @@ fn write(
         folder.write_text(FOUND, &report::toml(sought, found))?;
         folder.write_text(JSON, &format!("{:#}\n", report::json(sought, found)))?;
         let trials = report::trials(sought, found);
-        folder.write_text(CSV, &csv_of(&trials))?;
+        folder.write_text(CSV, &trials.csv())?;
         folder.write(PARQUET, |file| file.write_all(&trials.bytes()))?;
         let mut figures = Vec::new();
         let mut drawn = vec![(COURSE, "The best search, run by run", report::course(sought, found))];
         if !found.front.is_empty() {
-            folder.write_text(FRONT_CSV, &csv_of(&report::front(sought, found)))?;
+            folder.write_text(FRONT_CSV, &report::front(sought, found).csv())?;
             drawn.push((FRONT, "The front of both goals", report::front_figure(sought, found)));
         }
         for (file, caption, svg) in drawn {

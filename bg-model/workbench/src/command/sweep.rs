@@ -12,7 +12,7 @@ use crate::files::{console, whole};
 use crate::program::Program;
 use crate::studies::sweep::folder::{Folder, Kind};
 use crate::studies::sweep::plan::Plan;
-use crate::studies::sweep::{Outcome, Share, SweepError, recipe, shown, sweep};
+use crate::studies::sweep::{Outcome, Share, SweepError, drawn, recipe, shown, sweep};
 
 #[derive(Debug, Args)]
 #[command(subcommand_negates_reqs = true, args_conflicts_with_subcommands = true)]
@@ -60,10 +60,11 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
     if let Some(SweepCommand::Show { folder, csv, trajectories }) = command {
         let folder = Folder::open(folder).map_err(SweepError::from)?;
         let lines = shown::lines(&folder).map_err(SweepError::from)?;
+        let told = drawn::write(program, &folder)?;
         for (kind, path) in [(Kind::Runs, csv), (Kind::Trajectories, trajectories)] {
             path.iter().try_for_each(|path| whole::write(path, |file| shown::write_csv(&folder, kind, file)))?;
         }
-        return Ok(say(&lines));
+        return Ok(say(&format!("{lines}{told}")));
     }
     let share = shard.as_deref().map_or(Ok(Share::ALL), Share::parse)?;
     let plan = Plan::read(program, plan.as_deref().expect("clap asks for it")).map_err(SweepError::from)?;
@@ -82,7 +83,13 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
     });
     bar.finish_and_clear();
     match outcome {
-        Ok(outcome) => Ok(ended(console::tell(&sentence(&outcome, &folder, plan.integration.step)).err())),
+        Ok(outcome) => {
+            // The last one of several processes draws what all have made.
+            let has_all = (0..outcome.shards).all(|shard| folder.has(shard, !plan.wanted.trajectories.is_empty()));
+            let told = if has_all { drawn::write(program, &folder)? } else { String::new() };
+            let told = format!("{told}{}", sentence(&outcome, &folder, plan.integration.step));
+            Ok(ended(console::tell(&told).err()))
+        }
         // What could be made is there.
         Err(fault @ SweepError::File(_)) => Ok(ended([fault])),
         Err(fault) => Err(fault.into()),

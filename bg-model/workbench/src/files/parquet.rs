@@ -6,6 +6,8 @@
 //! numbers before them which are there (definition levels, `RLE`). Source: Apache Parquet, "File Format" and "Encodings",
 //! parquet.apache.org/docs/file-format.
 
+use std::io;
+
 use polars_parquet_format::thrift::protocol::{TCompactInputProtocol, TCompactOutputProtocol};
 use polars_parquet_format::{
     ColumnChunk, ColumnMetaData, CompressionCodec, ConvertedType, DataPageHeader, Encoding, FieldRepetitionType,
@@ -248,6 +250,38 @@ impl Table {
         let chunks = group.columns.iter().map(|chunk| chunk.meta_data.as_ref().ok_or(ParquetError::Foreign));
         let columns = chunks.map(|chunk| column(file, chunk?)).collect::<Result<_, _>>()?;
         Ok(Self { columns, texts: texts(metadata) })
+    }
+
+    /// Writes its rows as CSV: every number in the shortest form that reads back to the same bits, nothing where there is
+    /// none.
+    ///
+    /// # Errors
+    /// `csv` fails.
+    pub fn write_rows(&self, csv: &mut csv::Writer<impl io::Write>) -> io::Result<()> {
+        let rows = self.columns.first().map_or(0, |column| column.values.len());
+        for row in 0..rows {
+            let field = |values: &Values| match values {
+                Values::Whole(values) => values[row].to_string(),
+                Values::Real(values) if values[row].is_nan() => String::new(),
+                Values::Real(values) => format!("{:?}", values[row]),
+                Values::Text(values) => values[row].clone(),
+            };
+            csv.write_record(self.columns.iter().map(|column| field(&column.values)))?;
+        }
+        Ok(())
+    }
+
+    /// It as CSV, with the names of its columns in the first line.
+    ///
+    /// # Panics
+    /// Memory does not take it.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut csv = csv::Writer::from_writer(Vec::new());
+        let names = self.columns.iter().map(|column| column.name.as_str());
+        let written = csv.write_record(names).map_err(io::Error::from).and_then(|()| self.write_rows(&mut csv));
+        written.expect("memory takes all");
+        String::from_utf8(csv.into_inner().expect("memory takes all")).expect("fields are text")
     }
 
     /// Appends the rows of a table with the same columns; a table without columns becomes that one.

@@ -12,7 +12,7 @@ const FLOORS: [&[&str]; 7] =
     [&["files"], &["ask"], &["run"], &["show"], &["program"], &["studies", "live"], &["command"]];
 /// The most arrows between rooms, and between the folders in them.
 const MOST_ARROWS: usize = 24;
-const MOST_ARROWS_OF_FOLDERS: usize = 63;
+const MOST_ARROWS_OF_FOLDERS: usize = 69;
 
 fn floor(room: &str) -> usize {
     FLOORS.iter().position(|floor| floor.contains(&room)).unwrap_or_else(|| panic!("on which floor is `{room}`?"))

@@ -95,7 +95,8 @@ fn files_do_not_depend_on_threads_or_on_who_makes_them() {
     let two = ["2/2", "1/2"].map(|part| text(path, &["sweep", "--plan", "plan.toml", "--out", "two", "--shard", part]));
     assert!(two[0].contains("2 of its 5 files are of this part; 2 files made; 14 runs"), "{}", two[0]);
     let [one, many, two] = ["one", "many", "two"].map(|name| files(&path.join(name)));
-    assert_eq!(one.len(), 6);
+    // The recipe, five shards, the page.
+    assert_eq!(one.len(), 7);
     assert!(one == many && one == two);
 }
 
@@ -125,7 +126,7 @@ fn a_sweep_that_is_killed_at_any_instant_goes_on_to_the_same_bytes() {
     let path = folder.path();
     text(path, &["sweep", "--plan", "plan.toml", "--out", "whole"]);
     let whole = files(&path.join("whole"));
-    assert_eq!(whole.len(), 1 + 2 * 43);
+    assert_eq!(whole.len(), 2 + 2 * 43);
     let start = |arguments: &[&str]| -> Child {
         let mut command = program("pendulum");
         command.current_dir(path).args(arguments).stdout(Stdio::null()).stderr(Stdio::null());
@@ -239,6 +240,17 @@ fn bad_plans_are_one_line_each() {
         "[grid]\nlength = [1]\n[columns]\nforce = ['max']\n",
         "[grid]\nlength = [1]\n[columns]\nforce_x = ['most']\n",
         "trajectories = ['force']\n[grid]\nlength = [1]\n",
+        "[tolerances]\ncount = 9\nseed = 1\n[tolerances.parameters]\nlength = { normal = [0.6, -1] }\n",
+        "[tolerances]\ncount = 9\nseed = 1\n[tolerances.parameters]\nlength = { normal = [0.6, 0.3] }\n",
+        "[tolerances]\ncount = 9\nseed = 1\n[tolerances.parameters]\nlength = { even = [0.6, 0.7] }\n",
+        "[tolerances]\ncount = 9\nseed = 1\ncorrelations = [['length', 'mass', 0.5]]\n\
+         [tolerances.parameters]\nlength = { uniform = [0.6, 0.7] }\n",
+        "[tolerances]\ncount = 9\nseed = 1\nindices = true\ncorrelations = [['length', 'angle', 0.5]]\n\
+         [tolerances.parameters]\nlength = { uniform = [0.6, 0.7] }\nangle = { uniform = [0.1, 0.2] }\n",
+        "[grid]\nlength = [1]\n[numbers]\npeak = 'max force_z'\n",
+        "[grid]\nlength = [1]\n[numbers]\nangle = 'max angle'\n[columns]\nangle = ['max']\n",
+        "[grid]\nlength = [1]\n[numbers]\nlate = 'at(angle, 9)'\n",
+        "[grid]\nlength = [1]\n[numbers]\nlength = 'max angle'\n",
     ];
     let mut lines = String::new();
     for plan in plans {
@@ -250,6 +262,88 @@ fn bad_plans_are_one_line_each() {
         lines += &format!("{plan}{line}\n");
     }
     insta::assert_snapshot!("plans", lines);
+}
+
+/// A length and an angle with tolerances, and numbers that are asked for by text.
+const TOLERANCES: &str = r#"
+t_end = 0.2
+[numbers]
+swing = "range angle"
+last = "final angle"
+pull = "max norm(force_x, force_y)"
+when = "time_of_min angle"
+[tolerances]
+count = 100
+seed = 7
+indices = true
+[tolerances.parameters]
+length = { normal = [0.6, 0.01] }
+angle = { truncated = [0.5, 0.05, 0.4, 0.6] }
+"#;
+
+#[test]
+fn tolerances_give_statistics_indices_and_a_page() {
+    let folder = with_plan(TOLERANCES);
+    let path = folder.path();
+    let told = text(path, &["sweep", "--plan", "plan.toml", "--out", "o"]);
+    assert!(told.contains("swing, which parameter spreads it") && told.contains("sweep of 400 runs"), "{told}");
+    let rows = table(path.join("o/runs-000000.parquet"));
+    // Of each sample of four runs A and B are drawn.
+    let values: Vec<f64> = ["o/runs-000000.parquet", "o/runs-000001.parquet"]
+        .iter()
+        .flat_map(|file| reals(&table(path.join(file)), "swing"))
+        .collect();
+    let drawn: Vec<f64> = values.iter().enumerate().filter(|(run, _)| run % 4 < 2).map(|(_, value)| *value).collect();
+    let mean = drawn.iter().sum::<f64>() / drawn.len() as f64;
+    let deviation = (drawn.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (drawn.len() - 1) as f64).sqrt();
+    let statistics = fs::read_to_string(path.join("o/statistics.csv")).unwrap();
+    let said = |start: &str| -> f64 {
+        let line = statistics.lines().find(|line| line.starts_with(start)).unwrap_or_else(|| panic!("{start}"));
+        line.split(',').nth(4).unwrap().parse().unwrap()
+    };
+    assert!((said("swing,rad,mean,,") - mean).abs() < 1e-12 * mean.abs(), "{statistics}");
+    assert!((said("swing,rad,deviation,,") - deviation).abs() < 1e-9 * deviation, "{statistics}");
+    // The run is short, so it is nearly linear in both: derivatives say the same.
+    let first_order = said("swing,rad,first order deviation,,");
+    assert!((first_order / deviation - 1.0).abs() < 0.15, "{first_order} {deviation}");
+    let [length, angle] = ["length", "angle"].map(|name| said(&format!("swing,rad,total index,{name},")));
+    let parts = ["length", "angle"]
+        .map(|name| (said(&format!("swing,rad,first order part of the deviation,{name},")) / first_order).powi(2));
+    assert!((length - parts[0]).abs() < 0.15 && (angle - parts[1]).abs() < 0.15, "{length} {angle} {parts:?}");
+    assert!(fs::read_to_string(path.join("o/index.html")).unwrap().contains("data:image/svg+xml;base64"));
+    // A number of a row is that of a run by itself, and the same as a column that is named.
+    let (lengths, angles) = (reals(&rows, "length"), reals(&rows, "angle"));
+    let plan = format!(
+        "t_end = 0.2\n[grid]\nlength = [{:?}]\nangle = [{:?}]\n[columns]\nangle = ['final', 'max', 'min']\n",
+        lengths[3], angles[3]
+    );
+    fs::write(path.join("one.toml"), plan).unwrap();
+    text(path, &["sweep", "--plan", "one.toml", "--out", "one"]);
+    let one = table(path.join("one/runs-000000.parquet"));
+    assert_eq!(reals(&one, "angle_final")[0], reals(&rows, "last")[3]);
+    let range = reals(&one, "angle_max")[0] - reals(&one, "angle_min")[0];
+    assert!((range - reals(&rows, "swing")[3]).abs() < 1e-9, "{range}");
+    let shown = text(path, &["sweep", "show", "o"]);
+    assert!(shown.contains("runs     400 of 400") && shown.contains("pull, which parameter spreads it"), "{shown}");
+}
+
+#[test]
+fn a_sweep_draws_itself() {
+    let page = |plan: &str| {
+        let folder = with_plan(plan);
+        text(folder.path(), &["sweep", "--plan", "plan.toml", "--out", "o"]);
+        fs::read_to_string(folder.path().join("o/index.html")).unwrap()
+    };
+    let count = |page: &str| page.matches("<figure>").count();
+    let columns = "[columns]\nangle = ['final', 'min']\n";
+    let lines = page(&format!("t_end = 0.1\n[grid]\nlength = [0.4, 0.5, 0.6]\n{columns}"));
+    assert!(count(&lines) == 2 && lines.contains("angle_final over length"), "{lines}");
+    let both = "length = { from = 0.4, to = 0.8, count = 8 }\nangle = { from = 0.1, to = 1, count = 9 }\n";
+    let map = page(&format!("t_end = 0.1\n[grid]\n{both}{columns}"));
+    assert!(count(&map) == 2 && map.contains("angle_min over angle and length"), "{map}");
+    let sampled = "ranges = { length = { from = 0.4, to = 0.8 }, angle = { from = 0.1, to = 1 } }\n";
+    let dots = page(&format!("t_end = 0.1\n[sobol]\ncount = 20\nseed = 1\n{sampled}{columns}"));
+    assert_eq!(count(&dots), 4);
 }
 
 #[test]

@@ -190,14 +190,15 @@ pub fn bars(heading: &str, caption: &str, bars: &[Bar]) -> Result<String, Figure
     let mut sorted: Vec<&Bar> = bars.iter().filter(|bar| bar.value.is_finite()).collect();
     sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
     sorted.truncate(MOST);
-    let longest = sorted.iter().fold(0.0_f64, |longest, bar| longest.max(bar.value.abs()));
+    let longest_of = |bar: &Bar| bar.value.abs().max(bar.inner.unwrap_or(0.0));
+    let longest = sorted.iter().fold(0.0_f64, |longest, bar| longest.max(longest_of(bar)));
     if longest == 0.0 {
         return Err(FigureError::Empty);
     }
     figure(&literally(heading), |area| {
         let content = Rectangle::CONTENT;
         write(area, &literally(caption), (content.x, content.y), &text(13, PENCIL.light, HPos::Left))?;
-        let height = ((content.height - 2 * CAPTION) / sorted.len() as i32).min(36);
+        let height = ((content.height - 2 * CAPTION) / sorted.len() as i32).min(64);
         let width = f64::from(content.width - NAMES - TEXTS);
         for (row, bar) in sorted.iter().enumerate() {
             let (x, y) = (content.x + NAMES, content.y + CAPTION + 8 + row as i32 * height);
@@ -212,7 +213,7 @@ pub fn bars(heading: &str, caption: &str, bars: &[Bar]) -> Result<String, Figure
             if let Some(inner) = bar.inner.filter(|inner| *inner > 0.0) {
                 area.draw(&rectangle(inner, 0.9)).map_err(drawing)?;
             }
-            let end = (x + length(bar.value) + 8, y + height / 2 - 10);
+            let end = (x + length(longest_of(bar)) + 8, y + height / 2 - 10);
             write(area, &literally(&bar.text), end, &text(12, PENCIL.light, HPos::Left))?;
         }
         Ok(())

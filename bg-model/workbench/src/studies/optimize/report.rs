@@ -5,11 +5,11 @@ use serde_json::{Value, json};
 
 use super::{End, Minimum, OptimizeError, Optimum, Sought, Trial};
 use crate::ask::parameters::number;
+use crate::files::parquet::{Column, Table, Values};
 use crate::files::table::table;
 use crate::show::figures::FigureError;
 use crate::show::figures::plot::{Mark, Plot, Series};
 use crate::show::sheet::{Item, sheet};
-use crate::studies::sweep::parquet::{Column, Table, Values};
 
 /// A number in so many digits, as tables have it.
 fn digits(value: f64) -> String {
@@ -343,11 +343,12 @@ pub fn course(sought: &Sought, found: &Optimum) -> Result<String, FigureError> {
     });
     let best: Vec<(f64, f64)> = best.collect();
     let heads = sought.heads();
-    let series = vec![
+    let mut series = vec![
         series("best so far", best, Mark::Line),
         series("missed", points(false), Mark::Dots),
         series("fulfilled", kept, Mark::Dots),
     ];
+    series.retain(|series| !series.points.is_empty());
     Plot::new("The best search, run by run", "run", &heads[0], series).drawn()
 }
 

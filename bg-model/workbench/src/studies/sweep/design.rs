@@ -12,6 +12,8 @@ use rand_pcg::rand_core::{Rng, SeedableRng};
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::distribution::Drawn;
+
 /// The most runs of a sweep.
 pub const MOST: usize = 100_000_000;
 /// The most points of the Sobol sequence, and its most parameters.
@@ -109,6 +111,18 @@ enum Points {
     /// The places of each run in the intervals, from 0 to 1, one after the other.
     Placed(Vec<Interval>, Vec<f64>),
     Sobol(Vec<Interval>, u32),
+    Drawn(Drawn),
+}
+
+/// How the runs of a sweep lie.
+#[derive(Clone, Copy, Debug)]
+pub enum Layout<'a> {
+    /// Each value of a parameter with each of the others.
+    Grid(&'a [Vec<f64>]),
+    /// Anywhere.
+    Scattered,
+    /// Drawn from distributions.
+    Drawn(&'a Drawn),
 }
 
 impl Scale {
@@ -196,6 +210,25 @@ impl Design {
         Self::new(names(intervals), count, Points::Sobol(values(intervals), seed))
     }
 
+    /// `count` samples drawn from distributions.
+    ///
+    /// # Errors
+    /// No or too many runs.
+    pub fn drawn(names: Vec<String>, drawn: Drawn, count: usize) -> Result<Self, DesignError> {
+        let runs = count.saturating_mul(drawn.width());
+        Self::new(names, runs, Points::Drawn(drawn))
+    }
+
+    /// How its runs lie.
+    #[must_use]
+    pub fn layout(&self) -> Layout<'_> {
+        match &self.points {
+            Points::Grid(axes) => Layout::Grid(axes),
+            Points::Drawn(drawn) => Layout::Drawn(drawn),
+            _ => Layout::Scattered,
+        }
+    }
+
     fn new(names: Vec<String>, runs: usize, points: Points) -> Result<Self, DesignError> {
         match runs {
             _ if names.is_empty() => Err(DesignError::Nothing),
@@ -232,6 +265,7 @@ impl Design {
             Points::Placed(intervals, places) => {
                 intervals.iter().zip(&places[run * width..]).map(|(interval, &place)| interval.at(place)).collect()
             }
+            Points::Drawn(drawn) => drawn.values(run),
             Points::Sobol(intervals, seed) => {
                 let place = |parameter| f64::from(sobol_burley::sample(run as u32, parameter, *seed));
                 intervals.iter().zip(0..).map(|(interval, parameter)| interval.at(place(parameter))).collect()
@@ -247,6 +281,10 @@ impl Design {
             Points::List(rows) => rows.iter().skip(parameter).step_by(self.names.len()).copied().collect(),
             Points::Placed(intervals, _) | Points::Sobol(intervals, _) => {
                 vec![intervals[parameter].from, intervals[parameter].to]
+            }
+            // What is outside of a range more seldom is a run that is refused.
+            Points::Drawn(drawn) => {
+                [1e-6, 1.0 - 1e-6].map(|part| drawn.distributions()[parameter].quantile(part)).to_vec()
             }
         }
     }

@@ -8,20 +8,26 @@
 //! |---|---|
 //! | [`plan`] | what is asked for, checked |
 //! | [`design`] | which values the parameters have in each run |
+//! | [`distribution`] | how values of parameters are spread, and correlated |
 //! | [`wanted`] | what is kept of a run |
 //! | [`recipe`] | whether two sweeps are the same |
 //! | [`runs`] | the runs of a shard, as tables |
 //! | [`lanes`] | the same runs side by side |
 //! | [`folder`] | which shards there are |
 //! | [`shown`] | what a folder has |
+//! | [`statistics`] | how a number is spread, and which parameter spreads it |
+//! | [`drawn`] | what a sweep looks like: a page |
 
 pub mod design;
+pub mod distribution;
+pub mod drawn;
 pub mod folder;
 pub mod lanes;
 pub mod plan;
 pub mod recipe;
 pub mod runs;
 pub mod shown;
+pub mod statistics;
 pub mod wanted;
 
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -30,6 +36,7 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::files::FileError;
+pub use crate::files::parquet;
 use crate::program::Program;
 use folder::{Folder, FolderError, Kind};
 use plan::{Plan, PlanError};
@@ -132,6 +139,10 @@ pub fn sweep(
     let job = Job::new(program, plan, folder.recipe());
     let (scene, inputs, request) = (plan.scene, &plan.chosen.inputs[..], &plan.request);
     let asked = runs::Asked { models: &program.models, scene, inputs, request };
+    if let Some(numbers) = &plan.numbers {
+        let make = |runs: &[usize]| job.looked_at(runs, |values| runs::look(asked, numbers, values));
+        return all(&job, folder, share, threads, told, (1, &make));
+    }
     if lanes::may_gain(plan) {
         let make = |numbers: &[usize]| job.runs_by(numbers, |values| lanes::many(asked, values));
         return all(&job, folder, share, threads, told, (lanes::TOGETHER, &make));

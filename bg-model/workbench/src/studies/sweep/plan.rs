@@ -7,6 +7,8 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use bg_analysis::criterion::Criteria;
+use bg_analysis::criterion::of_run::Look;
 use bg_model::description::Description;
 use bg_model::run::Request;
 use serde::Deserialize;
@@ -14,7 +16,8 @@ use thiserror::Error;
 use toml::Spanned;
 
 use super::design::{Axis, Design, DesignError, Interval};
-use super::wanted::{Reduction, Wanted};
+use super::distribution::{Distribution, Drawn};
+use super::wanted::{Numbers, Reduction, Wanted};
 use crate::ask::inputs::{self, InputSettingError, Setting};
 use crate::ask::parameters::{self, Chosen, SettingError, Values, nearest, one_line, place_of};
 use crate::ask::request::{Integration, RequestError};
@@ -132,6 +135,8 @@ struct File {
     list: Option<PathBuf>,
     latin_hypercube: Option<Sampled<u64>>,
     sobol: Option<Sampled<u32>>,
+    tolerances: Option<Tolerances>,
+    numbers: Option<BTreeMap<String, Spanned<String>>>,
     columns: Option<Columns>,
     #[serde(default)]
     event_times: usize,
@@ -160,6 +165,18 @@ struct Sampled<Seed> {
     count: usize,
     seed: Seed,
     ranges: BTreeMap<String, Spanned<Interval>>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Tolerances {
+    count: usize,
+    seed: u64,
+    #[serde(default)]
+    indices: bool,
+    #[serde(default)]
+    correlations: Vec<(String, String, f64)>,
+    parameters: BTreeMap<String, Spanned<Distribution>>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -206,6 +223,8 @@ pub struct Plan<'a> {
     pub design: Design,
     /// What is kept.
     pub wanted: Wanted,
+    /// Numbers of runs that are kept beside that.
+    pub numbers: Option<Numbers>,
     /// Runs in a shard.
     pub shard: usize,
 }
@@ -248,10 +267,11 @@ impl<'a> Plan<'a> {
         request.step_limit = file.step_limit.unwrap_or(request.step_limit);
         let wanted = wanted(&file, scene.description).map_err(other)?;
         request.peaks = wanted.has_peaks();
-        check_names(&design, &wanted, scene.description).map_err(other)?;
+        let numbers = numbers(&file, scene.description, &integration).map_err(other)?;
+        check_names(&design, &wanted, numbers.as_ref(), scene.description).map_err(other)?;
         let rows = 1 + (integration.t_end / integration.step) as usize;
-        let numbers = rows * wanted.trajectories.len();
-        let shard = file.shard.unwrap_or_else(|| MOST_NUMBERS.checked_div(numbers).unwrap_or(SHARD).clamp(1, SHARD));
+        let samples = rows * wanted.trajectories.len();
+        let shard = file.shard.unwrap_or_else(|| MOST_NUMBERS.checked_div(samples).unwrap_or(SHARD).clamp(1, SHARD));
         if shard == 0 {
             return Err(other("shard is 0; give the number of runs in a file, such as 200".to_owned()));
         }
@@ -259,7 +279,7 @@ impl<'a> Plan<'a> {
             Start::Model => Begin::Model,
             Start::Equilibrium => Begin::Equilibrium,
         };
-        Ok(Self { text, scene, integration, request, begin, chosen, settings, design, wanted, shard })
+        Ok(Self { text, scene, integration, request, begin, chosen, settings, design, wanted, numbers, shard })
     }
 }
 
@@ -296,11 +316,12 @@ fn design(file: &File, plan: &str, folder: &Path) -> Result<(&'static str, Desig
         ("list", file.list.is_some()),
         ("[latin_hypercube]", file.latin_hypercube.is_some()),
         ("[sobol]", file.sobol.is_some()),
+        ("[tolerances]", file.tolerances.is_some()),
     ];
     let there: Vec<&'static str> = kinds.into_iter().filter(|(_, is_there)| *is_there).map(|(kind, _)| kind).collect();
     let [of] = there[..] else {
         let found = if there.is_empty() { "none".to_owned() } else { there.join(" and ") };
-        let fault = format!("give one of [grid], list, [latin_hypercube] and [sobol]; there is {found}");
+        let fault = format!("give one of [grid], list, [latin_hypercube], [sobol] and [tolerances]; there is {found}");
         return Err(PlanError::Other { plan: plan.to_owned(), fault });
     };
     let design = if let Some(grid) = &file.grid {
@@ -312,6 +333,10 @@ fn design(file: &File, plan: &str, folder: &Path) -> Result<(&'static str, Desig
         Design::list(names, rows)
     } else if let Some(Sampled { count, seed, ranges }) = &file.latin_hypercube {
         Design::latin_hypercube(&in_order(ranges), *count, *seed)
+    } else if let Some(tolerances) = &file.tolerances {
+        let fault = |fault| PlanError::Other { plan: plan.to_owned(), fault: format!("{of}: {fault}") };
+        let (names, drawn) = drawn(tolerances).map_err(fault)?;
+        Design::drawn(names, drawn, tolerances.count)
     } else {
         let Sampled { count, seed, ranges } = file.sobol.as_ref().expect("one of them is there");
         Design::sobol(&in_order(ranges), *count, *seed)
@@ -320,6 +345,42 @@ fn design(file: &File, plan: &str, folder: &Path) -> Result<(&'static str, Desig
         Ok(design) => Ok((of, design)),
         Err(fault) => Err(PlanError::Design { plan: plan.to_owned(), of, fault }),
     }
+}
+
+/// The parameters that tolerances spread, and what they are drawn from.
+fn drawn(tolerances: &Tolerances) -> Result<(Vec<String>, Drawn), String> {
+    let Tolerances { seed, indices, correlations, parameters, .. } = tolerances;
+    let (names, distributions): (Vec<String>, Vec<Distribution>) = in_order(parameters).into_iter().unzip();
+    for (name, distribution) in names.iter().zip(&distributions) {
+        distribution.check().map_err(|fault| format!("`{name}`: {fault}"))?;
+    }
+    let place = |name: &String| {
+        let found = names.iter().position(|known| known == name);
+        found.ok_or_else(|| format!("the correlation of `{name}`: it is none of the parameters here"))
+    };
+    let correlations = correlations.iter().map(|(a, b, value)| Ok((place(a)?, place(b)?, *value)));
+    let correlations = correlations.collect::<Result<Vec<_>, String>>()?;
+    let drawn = Drawn::new(distributions, &correlations, *seed, *indices)?;
+    Ok((names, drawn))
+}
+
+/// The numbers of runs that are kept, by their names.
+fn numbers(file: &File, model: &'static Description, integration: &Integration) -> Result<Option<Numbers>, String> {
+    let Some(texts) = &file.numbers else { return Ok(None) };
+    if file.columns.is_some() || !matches!(file.trajectories, Trajectories::All(false)) {
+        return Err("[numbers] are beside no columns and no trajectories; leave out one of them".to_owned());
+    }
+    if matches!(file.start, Start::Equilibrium) {
+        return Err("[numbers] are of runs from the model's own start; leave out start".to_owned());
+    }
+    let mut criteria = Criteria::new(model);
+    let mut named = Vec::new();
+    for (name, text) in in_order(texts) {
+        let found = criteria.criterion(&text).map_err(|fault| format!("[numbers], `{name}`: {fault}"))?;
+        named.push((name, found));
+    }
+    let look = Look::new(criteria, integration.step, integration.t_end).map_err(|fault| fault.to_string())?;
+    Ok(Some(Numbers { look, named }))
 }
 
 /// As they stand in the file: the parser sorts them by name.
@@ -411,7 +472,7 @@ fn wanted(file: &File, model: &Description) -> Result<Wanted, String> {
         Trajectories::Named(names) => names.iter().map(output).collect::<Result<_, _>>()?,
     };
     let mut reductions: Vec<(usize, Reduction)> = match &file.columns {
-        None if file.event_times > 0 || !trajectories.is_empty() => Vec::new(),
+        None if file.numbers.is_some() || file.event_times > 0 || !trajectories.is_empty() => Vec::new(),
         None => all(&[Reduction::Max, Reduction::Min, Reduction::Mean, Reduction::Final]),
         Some(Columns::All(reductions)) => all(reductions),
         Some(Columns::Named(named)) => {
@@ -432,8 +493,9 @@ fn wanted(file: &File, model: &Description) -> Result<Wanted, String> {
 }
 
 /// No column may be called as another.
-fn check_names(design: &Design, wanted: &Wanted, model: &Description) -> Result<(), String> {
-    let kept = wanted.columns(model).into_iter().map(|(name, _)| name);
+fn check_names(design: &Design, wanted: &Wanted, numbers: Option<&Numbers>, model: &Description) -> Result<(), String> {
+    let numbers = numbers.into_iter().flat_map(Numbers::columns);
+    let kept = wanted.columns(model).into_iter().chain(numbers).map(|(name, _)| name);
     let mut names: Vec<String> = super::OWN_COLUMNS.map(str::to_owned).into_iter().chain(kept).collect();
     names.extend(design.names.iter().cloned());
     names.sort_unstable();

@@ -31,7 +31,7 @@ pub(super) const OF_SIZES: &str = "by the sizes of the states";
 /// The recipe of a sweep by `plan`.
 #[must_use]
 pub fn of(program: &Program, plan: &Plan<'_>) -> Table {
-    let Plan { scene, integration, request, begin, chosen, settings, design, wanted, shard, text } = plan;
+    let Plan { scene, integration, request, begin, chosen, settings, design, wanted, numbers, shard, text } = plan;
     let model = scene.description;
     let of_strings = |names: &mut dyn Iterator<Item = String>| Value::Array(names.map(Value::String).collect());
     let values = (0..design.runs).flat_map(|run| design.values(run)).flat_map(f64::to_le_bytes);
@@ -40,7 +40,9 @@ pub fn of(program: &Program, plan: &Plan<'_>) -> Table {
     let inputs = model.inputs.iter().zip(settings).map(|(info, setting)| (info.name.to_owned(), input(setting)));
     let files = model.inputs.iter().zip(settings);
     let files = files.filter_map(|(info, setting)| Some((info.name.to_owned(), Value::String(file(setting)?))));
-    let columns = wanted.columns(model).into_iter().map(|(name, _)| name);
+    let numbers = numbers.iter().flat_map(|numbers| &numbers.named);
+    let numbers = numbers.map(|(name, number)| format!("{name} = {}", number.text));
+    let columns = wanted.columns(model).into_iter().map(|(name, _)| name).chain(numbers);
     let trajectories = wanted.trajectories.iter().map(|&output| model.outputs[output].name.to_owned());
     let entries = [
         ("program", Value::String(program.texts.name.clone())),

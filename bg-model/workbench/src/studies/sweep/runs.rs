@@ -7,16 +7,16 @@ use std::ops::Range;
 
 use bg_model::description::{Description, ParameterInfo};
 use bg_model::input::Input;
-use bg_model::run::Request;
+use bg_model::run::{Request, RunError, Stopped};
 use bg_model::simulation::Recording;
 
 use super::OWN_COLUMNS;
 use super::design::Design;
 use super::plan::Plan;
 use super::recipe::OF_SIZES;
-use super::wanted::Wanted;
+use super::wanted::{Numbers, Wanted};
 use crate::ask::parameters::Values as Parameters;
-use crate::ask::scenes::{Models, Scene};
+use crate::ask::scenes::{Models, Scene, own_values};
 use crate::files::parquet::{Column, Table, Values};
 use crate::program::Program;
 use crate::run::running::{Begin, Outcome, follow};
@@ -49,6 +49,32 @@ pub fn run(asked: Asked<'_>, begin: &Begin, values: &[f64]) -> Result<Outcome, S
     let machine = models.made(scene, &asked.all(values), inputs).map_err(|fault| fault.to_string())?;
     let from = begin.state(&*machine).map_err(|fault| fault.to_string())?;
     follow(&*machine, request.clone(), from.as_ref(), |_| ()).map_err(|fault| fault.to_string())
+}
+
+/// The same with numbers of it: none of a run that has not come to its end.
+pub fn look(asked: Asked<'_>, numbers: &Numbers, values: &[f64]) -> (Result<Outcome, String>, Vec<f64>) {
+    let Asked { models, scene, inputs, request } = asked;
+    let made = || -> Result<_, String> {
+        let all = asked.all(values);
+        let own = own_values(scene, &models.scenes, &all).map_err(|fault| fault.to_string())?;
+        let machine = models.made(scene, &all, inputs).map_err(|fault| fault.to_string())?;
+        Ok((own, machine))
+    };
+    let (own, machine) = match made() {
+        Ok(made) => made,
+        Err(fault) => return (Err(fault), Vec::new()),
+    };
+    match numbers.look.run(&*machine.model(), own.values(), request) {
+        Ok(found) => {
+            let values = numbers.of(&found);
+            (Ok(Outcome { run: found.run, failure: None }), values)
+        }
+        Err(RunError::Stopped(stopped)) => {
+            let Stopped { cause, trajectory } = *stopped;
+            (Ok(Outcome { run: trajectory, failure: Some(cause.to_string()) }), Vec::new())
+        }
+        Err(fault) => (Err(fault.to_string()), Vec::new()),
+    }
 }
 
 /// How far a run has come.
@@ -98,6 +124,7 @@ impl Done {
 pub struct Job<'a> {
     design: &'a Design,
     wanted: &'a Wanted,
+    numbers: Option<&'a Numbers>,
     model: &'static Description,
     parameters: &'static [ParameterInfo],
     /// The values of all parameters, the swept ones as they would be without a sweep.
@@ -111,7 +138,7 @@ pub struct Job<'a> {
 impl<'a> Job<'a> {
     /// The job of `plan`; every file says `recipe`.
     pub fn new(program: &Program, plan: &'a Plan<'_>, recipe: &str) -> Self {
-        let Plan { design, wanted, scene, chosen, shard, .. } = plan;
+        let Plan { design, wanted, numbers, scene, chosen, shard, .. } = plan;
         let parameters = chosen.values.table();
         let place = |name: &String| parameters.iter().position(|info| info.name == name).expect("a plan was checked");
         let base = chosen.values.values().to_vec();
@@ -130,7 +157,8 @@ impl<'a> Job<'a> {
             ("sweep", recipe.to_owned()),
         ];
         let texts = texts.map(|(name, text)| (name.to_owned(), text)).to_vec();
-        Self { design, wanted, model: scene.description, parameters, base, swept, shard: *shard, texts }
+        let (numbers, model, shard) = (numbers.as_ref(), scene.description, *shard);
+        Self { design, wanted, numbers, model, parameters, base, swept, shard, texts }
     }
 
     /// How many runs.
@@ -157,7 +185,22 @@ impl<'a> Job<'a> {
     /// Makes the runs of these numbers by `many`, which is handed the values of all parameters in each.
     pub fn runs_by(&self, numbers: &[usize], many: impl Fn(&[Vec<f64>]) -> Vec<Result<Outcome, String>>) -> Vec<Done> {
         let values: Vec<Vec<f64>> = numbers.iter().map(|&number| self.values(number)).collect();
-        many(&values).into_iter().map(|outcome| self.done(outcome)).collect()
+        many(&values).into_iter().map(|outcome| self.done(outcome, Vec::new())).collect()
+    }
+
+    /// Makes the runs of these numbers by `one`, which is handed the values of all parameters in it and gives numbers of
+    /// it as well.
+    pub fn looked_at(&self, runs: &[usize], one: impl Fn(&[f64]) -> (Result<Outcome, String>, Vec<f64>)) -> Vec<Done> {
+        let of = |&run: &usize| {
+            let (outcome, numbers) = one(&self.values(run));
+            self.done(outcome, numbers)
+        };
+        runs.iter().map(of).collect()
+    }
+
+    /// Names and units of the columns that a run fills.
+    fn columns(&self) -> impl Iterator<Item = (String, String)> + use<'_> {
+        self.wanted.columns(self.model).into_iter().chain(self.numbers.into_iter().flat_map(Numbers::columns))
     }
 
     /// The values of all parameters in run `number`.
@@ -167,9 +210,9 @@ impl<'a> Job<'a> {
         values
     }
 
-    /// What is kept of a run.
-    fn done(&self, outcome: Result<Outcome, String>) -> Done {
-        let width = self.wanted.reductions.len() + self.wanted.event_times;
+    /// What is kept of a run, beside `numbers` of it.
+    fn done(&self, outcome: Result<Outcome, String>, mut numbers: Vec<f64>) -> Done {
+        let width = self.columns().count();
         let Outcome { run, failure } = match outcome {
             Ok(outcome) => outcome,
             Err(reason) => {
@@ -180,7 +223,11 @@ impl<'a> Job<'a> {
         };
         let numbers = match &failure {
             Some(_) => vec![f64::NAN; width],
-            None => self.wanted.numbers(&run),
+            None => {
+                let mut all = self.wanted.numbers(&run);
+                all.append(&mut numbers);
+                all
+            }
         };
         Done {
             status: if failure.is_some() { Status::Stopped } else { Status::Done },
@@ -212,7 +259,7 @@ impl<'a> Job<'a> {
         columns.push((reached.to_owned(), "s".to_owned(), real(&|done| done.reached)));
         columns.push((steps.to_owned(), String::new(), whole(|done| done.steps as i64)));
         columns.push((events.to_owned(), String::new(), whole(|done| done.events as i64)));
-        for (place, (name, unit)) in self.wanted.columns(self.model).into_iter().enumerate() {
+        for (place, (name, unit)) in self.columns().enumerate() {
             columns.push((name, unit, real(&|done| done.numbers[place])));
         }
         self.with_texts(columns)

@@ -69,36 +69,9 @@ pub fn write_csv(folder: &Folder, kind: Kind, writer: impl Write) -> io::Result<
             csv.write_record(table.columns.iter().map(|column| column.name.as_str()))?;
             has_header = true;
         }
-        write_rows(&table, &mut csv)?;
+        table.write_rows(&mut csv)?;
     }
     csv.flush()
-}
-
-/// The rows of a table.
-fn write_rows(table: &Table, csv: &mut csv::Writer<impl Write>) -> io::Result<()> {
-    let rows = table.columns.first().map_or(0, |column| column.values.len());
-    for row in 0..rows {
-        let field = |values: &Values| match values {
-            Values::Whole(values) => values[row].to_string(),
-            Values::Real(values) if values[row].is_nan() => String::new(),
-            Values::Real(values) => format!("{:?}", values[row]),
-            Values::Text(values) => values[row].clone(),
-        };
-        csv.write_record(table.columns.iter().map(|column| field(&column.values)))?;
-    }
-    Ok(())
-}
-
-/// A table as CSV, as [`write_csv`] has it.
-#[must_use]
-pub fn csv_of(table: &Table) -> String {
-    let mut csv = csv::Writer::from_writer(Vec::new());
-    let names = table.columns.iter().map(|column| column.name.as_str());
-    csv.write_record(names)
-        .map_err(io::Error::from)
-        .and_then(|()| write_rows(table, &mut csv))
-        .expect("memory takes all");
-    String::from_utf8(csv.into_inner().expect("memory takes all")).expect("fields are text")
 }
 
 /// All rows of the shards that are there as one table, for who has the memory.
@@ -134,7 +107,10 @@ fn whole(recipe: &toml::Table, name: &str) -> usize {
 }
 
 /// The tables that are there, in the order of the shards.
-fn tables(folder: &Folder, kind: Kind) -> Result<impl Iterator<Item = Result<Table, FolderError>>, FolderError> {
+pub(super) fn tables(
+    folder: &Folder,
+    kind: Kind,
+) -> Result<impl Iterator<Item = Result<Table, FolderError>>, FolderError> {
     let recipe = folder.entries()?;
     let shards = whole(&recipe, "runs").div_ceil(whole(&recipe, "shard").max(1));
     Ok((0..shards).filter_map(move |shard| folder.read(kind, shard).transpose()))

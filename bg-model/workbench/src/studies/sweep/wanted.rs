@@ -4,6 +4,8 @@
 //! integrals are those of straight lines between the samples (trapezoidal rule); where that is not exact enough, the model
 //! can observe an `integral(..)`, or samples can be finer.
 
+use bg_analysis::criterion::Criterion;
+use bg_analysis::criterion::of_run::{Found, Look};
 use bg_model::description::Description;
 use bg_model::simulation::{Column, Recording};
 use serde::{Deserialize, Serialize};
@@ -100,6 +102,29 @@ impl Wanted {
         let reduced = self.reductions.iter().map(|&(output, by)| by.of(run, &run.columns[output]));
         let events = (0..self.event_times).map(|event| run.events.get(event).copied().unwrap_or(f64::NAN));
         reduced.chain(events).collect()
+    }
+}
+
+/// Numbers of a run by their names, and what is looked at of a run for them.
+#[derive(Clone, Debug)]
+pub struct Numbers {
+    /// What is looked at.
+    pub look: Look,
+    /// The numbers.
+    pub named: Vec<(String, Criterion)>,
+}
+
+impl Numbers {
+    /// Names and units of their columns.
+    pub fn columns(&self) -> impl Iterator<Item = (String, String)> + use<'_> {
+        self.named.iter().map(|(name, number)| (name.clone(), number.unit().to_owned()))
+    }
+
+    /// Their values of a run, each in its unit.
+    #[must_use]
+    pub fn of(&self, found: &Found) -> Vec<f64> {
+        let value = |number: &Criterion| number.shown(self.look.criteria().value(number, &found.known));
+        self.named.iter().map(|(_, number)| value(number)).collect()
     }
 }
 
