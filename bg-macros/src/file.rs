@@ -44,7 +44,8 @@ pub fn compile(Named { path, span }: &Named, root: &Path) -> TokenStream {
     let gather = || files::gather(Path::new(path), first.clone(), &|path| open(root, path));
     let gathered = gather();
     // With these rustc builds anew where a file changes.
-    let watched = gathered.files.iter().map(|file| root.join(&file.path).display().to_string());
+    let of_user = gathered.files.iter().filter(|file| !file.is_of_library);
+    let watched = of_user.map(|file| root.join(&file.path).display().to_string());
     let mut items = quote!(#(const _: &[::core::primitive::u8] = ::core::include_bytes!(#watched);)*);
     let mut is_faulty = !gathered.faults.is_empty();
     if !is_faulty {

@@ -31,6 +31,7 @@ use proc_macro::TokenStream;
 /// [statements]: #statements
 /// [stops-with-a-restitution]: #stops-with-a-restitution
 /// [tables]: #table
+/// [the-library]: #the-library
 /// [the-square-root-at-zero]: #the-square-root-at-zero
 /// [the-start]: #the-start
 /// [units]: #units
@@ -40,6 +41,7 @@ use proc_macro::TokenStream;
 #[doc = include_str!("../docs/language/units.md")]
 #[doc = include_str!("../docs/language/mechanisms.md")]
 #[doc = include_str!("../docs/language/parts.md")]
+#[doc = include_str!("../docs/language/library.md")]
 #[doc = include_str!("../docs/language/scenes.md")]
 #[doc = include_str!("../docs/language/start.md")]
 #[doc = include_str!("../docs/language/values.md")]

@@ -310,7 +310,7 @@ const SCENES: [(&str, &str); 12] = [
 ];
 
 /// Parts and graphs that use them.
-const PARTS: [(&str, &str); 15] = [
+const PARTS: [(&str, &str); 16] = [
     ("BG0801", "graph G { part a: ▸Lag; }\npart Leg { let a = 1; }"),
     ("BG0802", "graph G { part a: Leg { ▸k = 1; } }\npart Leg { param j: 1 = 2; let a = j; }"),
     ("BG0803", "graph G { part a: Leg; }\npart Leg { part b: ▸Leg; }"),
@@ -333,10 +333,12 @@ const PARTS: [(&str, &str); 15] = [
         "BG0815",
         "graph ▸G { for i in 0..9000 { for j in 0..9000 { let a[i][j] = 1; } } part b: Leg { c = 1; } }\npart Leg { let a = 1; }",
     ),
+    ("BG0816", "graph G { part a: Leg; let b = ▸a.length; }\npart Leg { let lenght = 1; }"),
 ];
 
 /// More of parts.
-const MORE_OF_PARTS: [(&str, &str); 10] = [
+const MORE_OF_PARTS: [(&str, &str); 11] = [
+    ("BG0816", "graph G { part a: Leg; let b = ▸a; }\npart Leg { let c = 1; observe { way = c } }"),
     (
         "BG0802",
         "graph G { part a: Leg { ▸foot.j = 1; } }\npart Leg { part foot: Foot { j = 1; } }\n\
@@ -364,7 +366,7 @@ const MORE_OF_PARTS: [(&str, &str); 10] = [
 ];
 
 /// Texts that use files.
-const FILES: [(&str, &str); 7] = [
+const FILES: [(&str, &str); 8] = [
     ("BG0901", "use ▸\"shift.bond\"; graph G {}"),
     ("BG0902", "use \"circle.bond\"; graph G {}"),
     ("BG0903", "use \"0\"; graph G {}"),
@@ -372,6 +374,7 @@ const FILES: [(&str, &str); 7] = [
     ("BG0905", "use ▸\"graph.bond\"; graph G {}"),
     ("BG0906", "graph G ▸("),
     ("BG0907", "graph G { table curve: rpm -> N*m = ▸\"curve.csv\"; }"),
+    ("BG0908", "use ▸gear; graph G {}"),
 ];
 
 /// The files that they use; one that is called as a number uses the next one.

@@ -52,7 +52,9 @@ pub fn compile_items(tokens: TokenStream) -> (TokenStream, bool) {
 
 /// The items of a call, or stubs of them with the faults.
 fn compiled(tokens: TokenStream) -> (TokenStream, Faults) {
-    let (source, faults) = syntax::parse_leniently(tokens.clone());
+    let (with_library, of_files) = syntax::files::call(tokens.clone());
+    let (source, of_syntax) = syntax::parse_leniently(with_library);
+    let faults = [of_syntax, of_files].concat();
     if let Some(path) = part::unasked(&source) {
         return (emit::question(path, &tokens), Faults::new());
     }

@@ -75,6 +75,11 @@ pub enum Own {
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
+    /// Lists the library of parts, which texts have by `use gears;`, or prints one of them
+    Parts {
+        /// The part to print
+        name: Option<String>,
+    },
     /// Writes a first mechanism
     New {
         /// What it is called: the file is NAME.bond

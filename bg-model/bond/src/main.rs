@@ -7,6 +7,7 @@ mod arguments;
 mod check;
 mod fmt;
 mod new;
+mod parts;
 mod served;
 mod watch;
 
@@ -38,6 +39,9 @@ fn main() -> ExitCode {
             said(manual::pages(arguments::whole(), &folder).and_then(|written| console::print(&format!("{written}\n"))))
         }
         Ok(Asked::Own(Own::New { name })) => new::new(&name).map_or_else(refused, |()| ExitCode::SUCCESS),
+        Ok(Asked::Own(Own::Parts { name })) => {
+            parts::parts(name.as_deref()).map_or_else(refused, |()| ExitCode::SUCCESS)
+        }
         Ok(Asked::Program(call)) => program(call),
         Err(fault) if fault.use_stderr() => refused(console::in_one_line(&fault.render().to_string())),
         // Help and version.

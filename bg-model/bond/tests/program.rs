@@ -495,3 +495,70 @@ fn what_cannot_be_served_says_how_the_page_is_built() {
     );
     assert!(refused(folder.path(), "serve --no-open", 2).contains("bond-site"));
 }
+
+/// The texts of the tasks for designers, each with the lines after it.
+const TASKS: &str = include_str!("../../../docs/tasks.md");
+
+/// The first text of the tasks with a line that begins with these words, and what that line goes on with.
+fn task(begins: &str) -> (&'static str, &'static str) {
+    let texts = TASKS.split("```bond\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let said = |text: &'static str| text.lines().find_map(|line| Some((text, line.strip_prefix(begins)?)));
+    texts.filter_map(said).next().unwrap_or_else(|| panic!("a text says {begins}"))
+}
+
+/// The numbers of a line.
+fn numbers(line: &str) -> Vec<f64> {
+    let words = line.split(' ').map(|word| word.trim_end_matches(['.', ',']));
+    words.filter_map(|word| word.parse().ok()).collect()
+}
+
+#[test]
+fn a_task_has_the_modes_that_it_says() {
+    for (begins, options) in [("// Modes: ", ""), ("// Modes at 0 s: ", " --at 0")] {
+        let folder = folder();
+        let (text, said) = task(begins);
+        write(&folder, "task.bond", text);
+        told(folder.path(), &format!("linearize task.bond{options}"));
+        let modes = std::fs::read_to_string(folder.path().join("out/linear/modes.txt")).expect("modes");
+        // Number, real part, imaginary part, frequency.
+        let rows = modes.lines().map(numbers).filter(|row| row.len() > 3 && row[0] > 0.0 && row[3] > 0.0);
+        let found: Vec<f64> = rows.map(|row| row[3]).collect();
+        for expected in numbers(said) {
+            let is_near = |found: &f64| (found - expected).abs() <= 5e-4 * expected;
+            assert!(found.iter().any(is_near), "{expected} Hz is none of {found:?}");
+        }
+    }
+}
+
+#[test]
+fn a_task_is_fitted_to_its_measurement() {
+    let folder = folder();
+    let (text, said) = task("// Fitted: ");
+    let measured = TASKS.split("```csv\n").nth(1).and_then(|rest| rest.split("```").next()).expect("a table");
+    write(&folder, "rundown.bond", text);
+    write(&folder, "measured.csv", measured);
+    let found = told(folder.path(), "identify rundown.bond measured.csv --fit air,bearing");
+    let row = |name: &str| found.lines().find(|line| line.trim().starts_with(name)).map(numbers).expect("a row");
+    let expected = numbers(said);
+    for (name, expected) in ["air ", "bearing "].iter().zip(expected) {
+        assert!((row(name)[0] - expected).abs() <= 5e-4 * expected, "{found}");
+    }
+}
+
+#[test]
+fn the_library_is_listed_and_its_parts_are_printed() {
+    let folder = folder();
+    let list = told(folder.path(), "parts");
+    assert!(list.contains("use gears;\n") && list.contains("  GearPair ") && !list.contains("StickingLoss"), "{list}");
+    let one = told(folder.path(), "parts GearPair");
+    assert!(one.starts_with("use gears;\n\n/// A rigid pair of gears") && one.ends_with("}\n"), "{one}");
+    let wrong = refused(folder.path(), "parts GearPar", 2);
+    assert!(wrong.contains("the library has no part `GearPar`; did you mean `GearPair`?"), "{wrong}");
+    // A file that uses it, here and from another folder.
+    let geared = "use gears; graph G { part p: GearPair; Se m = 1; 1 a: rotation; 1 b: rotation; I i = 1; m -> a -> p.first; p.second -> b -> i; }";
+    write(&folder, "geared.bond", geared);
+    assert!(told(folder.path(), "check geared.bond").contains("geared.bond"));
+    write(&folder, "wrong.bond", &geared.replace("use gears", "use gear"));
+    let fault = refused(folder.path(), "check wrong.bond", 1);
+    assert!(fault.contains("error[BG0908]") && fault.contains("wrong.bond:1:5"), "{fault}");
+}

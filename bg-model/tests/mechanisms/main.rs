@@ -9,6 +9,7 @@ mod double_wishbone;
 mod governor;
 mod hand;
 mod immobile;
+mod library;
 mod loops;
 mod orifice;
 #[path = "../problems/mod.rs"]

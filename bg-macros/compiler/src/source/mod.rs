@@ -6,6 +6,7 @@ pub mod ast;
 mod ast_part;
 pub mod clause;
 pub mod drawing;
+pub mod library;
 pub mod mechanism;
 pub mod names;
 pub mod numbers;

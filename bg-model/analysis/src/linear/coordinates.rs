@@ -6,7 +6,7 @@
 //! Method: R R^T = 1 leaves dR = [w x] R with the rotation vector w in inertial axes, of which a coordinate each is
 //! w_x, w_y, w_z. Where a scene keeps a part of R only, as many axes are taken as this part shows; where it does not
 //! show the axis, the entries stay coordinates themselves. Away from rest these are the coordinates w of R = exp([w x])
-//! R_0.
+//! R_0, where R_0 is the orientation of the motion itself, which goes on: so what changes R turns with it.
 
 use bg_model::description::{Description, StateKind};
 use bg_model::nalgebra::{DMatrix, DVector};
@@ -37,6 +37,8 @@ pub(super) struct Coordinates {
     pub list: Vec<Coordinate>,
     /// Column: how a unit of a coordinate changes the states.
     pub to_states: DMatrix<f64>,
+    /// How fast these columns change as the state moves: those of rotations turn with what they are of.
+    pub turning: DMatrix<f64>,
     /// Row: how a coordinate changes with the states.
     pub from_states: DMatrix<f64>,
     /// Integrals that outputs ask for, on which no rate depends.
@@ -49,11 +51,13 @@ pub(super) struct Coordinates {
 struct Column {
     coordinate: Coordinate,
     change: DVector<f64>,
+    /// How fast that changes as the state moves.
+    turning: DVector<f64>,
 }
 
 impl Coordinates {
-    /// The coordinates at state `x`; `by_state` are the derivatives of the rates there at rest.
-    pub fn at(description: &Description, x: &DVector<f64>, by_state: &DMatrix<f64>) -> Self {
+    /// The coordinates at state `x`, which moves by `rates`; `by_state` are the derivatives of the rates there at rest.
+    pub fn at(description: &Description, x: &DVector<f64>, rates: &DVector<f64>, by_state: &DMatrix<f64>) -> Self {
         let states = description.states;
         let (mut columns, mut integrals, mut orientations) = (Vec::new(), Vec::new(), Vec::new());
         let mut done = vec![false; states.len()];
@@ -68,7 +72,7 @@ impl Coordinates {
             if let StateKind::Orientation(..) = state.kind {
                 let matrix = Entries::around(description, index);
                 matrix.places.iter().for_each(|&(_, place)| done[place] = true);
-                if let Some(rotations) = matrix.rotations(x, by_state) {
+                if let Some(rotations) = matrix.rotations(x, rates, by_state) {
                     orientations.push((matrix.name.clone(), matrix.places.len(), rotations.len()));
                     columns.extend(rotations);
                 } else {
@@ -78,7 +82,10 @@ impl Coordinates {
             }
             columns.push(itself(description, index));
         }
-        let to_states = DMatrix::from_fn(states.len(), columns.len(), |row, column| columns[column].change[row]);
+        let matrix = |of: fn(&Column) -> &DVector<f64>| {
+            DMatrix::from_fn(states.len(), columns.len(), |row, column| of(&columns[column])[row])
+        };
+        let (to_states, turning) = (matrix(|column| &column.change), matrix(|column| &column.turning));
         // Columns of different coordinates share no state but those of one orientation, which are orthogonal there.
         let mut from_states = to_states.transpose();
         for mut row in from_states.row_iter_mut() {
@@ -86,7 +93,7 @@ impl Coordinates {
             row /= square;
         }
         let list = columns.into_iter().map(|column| column.coordinate).collect();
-        Self { list, to_states, from_states, integrals, orientations }
+        Self { list, to_states, turning, from_states, integrals, orientations }
     }
 }
 
@@ -106,7 +113,8 @@ fn itself(description: &Description, index: usize) -> Column {
     };
     let mut change = DVector::zeros(description.states.len());
     change[index] = 1.0;
-    Column { coordinate: Coordinate { name: state.name.to_owned(), unit: state.unit, role }, change }
+    let turning = DVector::zeros(change.len());
+    Column { coordinate: Coordinate { name: state.name.to_owned(), unit: state.unit, role }, change, turning }
 }
 
 /// The entries of an orientation that are states.
@@ -130,8 +138,8 @@ impl Entries {
     }
 
     /// The rotations that these entries show, if those are all that the mechanism can do.
-    fn rotations(&self, x: &DVector<f64>, by_state: &DMatrix<f64>) -> Option<Vec<Column>> {
-        let columns: Vec<Column> = (0..3).filter_map(|axis| self.rotation(axis, x)).collect();
+    fn rotations(&self, x: &DVector<f64>, rates: &DVector<f64>, by_state: &DMatrix<f64>) -> Option<Vec<Column>> {
+        let columns: Vec<Column> = (0..3).filter_map(|axis| self.rotation(axis, x, rates)).collect();
         let rows: Vec<usize> = self.places.iter().map(|&(_, place)| place).collect();
         // The rates of the entries with the momenta of a body are [w x] R.
         for state in (0..x.len()).filter(|state| !rows.contains(state)) {
@@ -150,8 +158,19 @@ impl Entries {
 
     /// The change of the entries by a small rotation about an inertial axis; none if it changes none of them, or if
     /// they do not show how.
-    fn rotation(&self, axis: usize, x: &DVector<f64>) -> Option<Column> {
-        // [e x] R for the axis e: row `next` becomes minus row `last`, row `last` becomes row `next`.
+    fn rotation(&self, axis: usize, x: &DVector<f64>, rates: &DVector<f64>) -> Option<Column> {
+        let change = self.turned(axis, x)?;
+        // It is linear in R, so that it changes as R does.
+        let turning = self.turned(axis, rates)?;
+        let owner = self.name.strip_suffix(".orientation").unwrap_or(&self.name);
+        let name = format!("{owner}.rotation_{}", ["x", "y", "z"][axis]);
+        let coordinate = Coordinate { name, unit: "rad", role: Role::Turn };
+        (change.norm() > 1e-3).then_some(Column { coordinate, change, turning })
+    }
+
+    /// [e x] R for an axis e, where the entries of R stand in `x`.
+    fn turned(&self, axis: usize, x: &DVector<f64>) -> Option<DVector<f64>> {
+        // Row `next` becomes minus row `last`, row `last` becomes row `next`.
         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
         let mut change = DVector::zeros(x.len());
         for &((row, column), place) in &self.places {
@@ -161,10 +180,7 @@ impl Entries {
                 _ => 0.0,
             };
         }
-        let owner = self.name.strip_suffix(".orientation").unwrap_or(&self.name);
-        let name = format!("{owner}.rotation_{}", ["x", "y", "z"][axis]);
-        let coordinate = Coordinate { name, unit: "rad", role: Role::Turn };
-        (change.norm() > 1e-3).then_some(Column { coordinate, change })
+        Some(change)
     }
 
     /// An entry of R. One that is no state follows where all that are stand in the plane across `axis`: there

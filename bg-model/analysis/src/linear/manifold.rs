@@ -46,6 +46,8 @@ pub(super) struct Manifold {
     pub coordinates: Vec<Coordinate>,
     /// Column: how a unit of a coordinate changes the states.
     pub tangent: DMatrix<f64>,
+    /// How fast the columns of `tangent` change because orientations turn.
+    pub turning: DMatrix<f64>,
     /// Row: how a coordinate changes with the states.
     pub chart: DMatrix<f64>,
     /// What is not among the coordinates.
@@ -68,7 +70,7 @@ impl Manifold {
         let description = plant.description;
         let at_rest = at_rest(description, x);
         let rest = if at_rest == *x { here.clone() } else { plant.derivatives(&at_rest) };
-        let all = Coordinates::at(description, x, &rest.rates_by_state);
+        let all = Coordinates::at(description, x, &here.rates, &rest.rates_by_state);
         let is_momentum = |k: &usize| all.list[*k].role == Role::Momentum;
         let (p, q): (Vec<usize>, Vec<usize>) = (0..all.list.len()).partition(is_momentum);
 
@@ -119,7 +121,8 @@ impl Manifold {
         Self {
             drifts,
             coordinates: kept.iter().map(|&k| all.list[k].clone()).collect(),
-            tangent: &all.to_states * expanded,
+            tangent: &all.to_states * &expanded,
+            turning: &all.turning * expanded,
             chart: all.from_states.select_rows(&kept),
             left_out: LeftOut {
                 integrals: all.integrals.iter().map(|&name| name.to_owned()).collect(),

@@ -5,8 +5,9 @@
 //! are between, the operating point, the modes.
 //! Method: exact derivatives by numbers with slopes, in the independent coordinates of `manifold`.
 //!
-//! At a state that is no equilibrium the same matrices describe the motion relative to that of the model for a short
-//! time only; where orientations change there, eigenvalues depend on the coordinates that are taken for them.
+//! At a state that is no equilibrium the same matrices describe the motion relative to that of the model: rotations are those
+//! from where the model itself turns. For a rotor that spins about its axis of symmetry they stay the same, and their modes are
+//! those of a Campbell diagram; else they are true for a short time only.
 
 use bg_model::description::Description;
 use bg_model::mechanism::Differentiable;
@@ -100,7 +101,7 @@ fn linearised(plant: &Plant, t: f64, x: &DVector<f64>) -> Result<StateSpace, Lin
     let manifold = Manifold::at(plant, x, &here, &inputs);
     let named = |name: &str, unit: &str| Named { name: name.to_owned(), unit: unit.to_owned() };
     let states: Vec<Named> = manifold.coordinates.iter().map(|k| named(&k.name, k.unit)).collect();
-    let a = &manifold.chart * &here.rates_by_state * &manifold.tangent;
+    let a = &manifold.chart * (&here.rates_by_state * &manifold.tangent - &manifold.turning);
     let point = description.states.iter().zip(x).zip(&here.rates);
     Ok(StateSpace {
         model: description.name.to_owned(),

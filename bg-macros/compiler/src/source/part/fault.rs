@@ -1,6 +1,7 @@
 //! What can be wrong with parts, their uses and repetitions.
 
 use crate::fault::Explain;
+use crate::source::library;
 
 /// A fault of a part.
 #[derive(Clone, Debug)]
@@ -26,6 +27,8 @@ pub enum PartFault {
     NothingToWatch { name: String, near: Option<String> },
     WatchesNothing { part: String },
     Large { of: String, most: usize },
+    IsAPart { name: String, outputs: Vec<String> },
+    NotInPart { part: String, name: String, near: Option<String>, outputs: Vec<String> },
 }
 
 use PartFault as F;
@@ -47,6 +50,7 @@ impl Explain for PartFault {
             F::StartTwice { .. } => "BG0813",
             F::NothingToWatch { .. } | F::WatchesNothing { .. } => "BG0814",
             F::Large { .. } => "BG0815",
+            F::IsAPart { .. } | F::NotInPart { .. } => "BG0816",
         }
     }
 
@@ -76,6 +80,8 @@ impl Explain for PartFault {
             F::StartTwice { body, clause } => format!("`start {clause}` of `{body}` is given twice"),
             F::NothingToWatch { name, .. } => format!("nothing is called `{name}`"),
             F::WatchesNothing { part } => format!("part `{part}` has no `observe`, so that there is nothing to watch"),
+            F::IsAPart { name, .. } => format!("`{name}` is a part, not a value"),
+            F::NotInPart { part, name, .. } => format!("the part `{part}` has no `{name}`"),
             F::Large { of, most } => {
                 format!("{of} has more than {most} statements, with its repetitions and parts written out")
             }
@@ -85,9 +91,13 @@ impl Explain for PartFault {
     fn help(&self) -> String {
         match self {
             F::UnknownPart { near: Some(near), .. }
+            | F::NotInPart { near: Some(near), .. }
             | F::UnknownParameter { near: Some(near), .. }
             | F::NothingToStart { near: Some(near), .. }
             | F::NothingToWatch { near: Some(near), .. } => format!("did you mean `{near}`?"),
+            F::UnknownPart { name, .. } if let Some(library) = library::home(name) => {
+                format!("write `use {library};` above it: it is a part of the library")
+            }
             F::UnknownPart { name, .. } if name.contains("::") => "write the path of a `pub part`".to_owned(),
             F::OfRust { .. } => "write the part into a file: a text cannot use parts of a Rust crate".to_owned(),
             F::UnknownPart { name, .. } => {
@@ -111,6 +121,11 @@ impl Explain for PartFault {
             F::NothingToStart { .. } => "write the path of a body, or of a point of it".to_owned(),
             F::StartTwice { .. } => "remove one of the two".to_owned(),
             F::NothingToWatch { .. } => "write the path of a part, body, joint or element".to_owned(),
+            F::IsAPart { name, outputs } | F::NotInPart { part: name, outputs, .. } => match &outputs[..] {
+                [] => format!("write the path of something in it, such as `{name}.NAME.flow`"),
+                [one] => format!("write its output, `{one}`"),
+                several => format!("write one of its outputs: {}", listed(several)),
+            },
             F::Large { .. } => "make it smaller; `bond` has an option for more, `--limit-statements`".to_owned(),
             F::WatchesNothing { .. } => "name what to watch, or give the part an `observe { ... }`".to_owned(),
         }

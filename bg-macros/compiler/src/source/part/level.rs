@@ -162,7 +162,8 @@ impl<'f> Level<'f> {
         let lists: Vec<Vec<Watch>> =
             places.iter().filter_map(|&k| watched(&mut items[k]).map(std::mem::take)).collect();
         self.flat.items = items;
-        let mut seen = Seen { flat: &self.flat, names: &mut self.names, faults: self.faults };
+        let uses = self.with_ports.iter().map(|(name, _)| name.text.clone()).collect();
+        let mut seen = Seen { flat: &self.flat, uses: &uses, names: &mut self.names, faults: self.faults };
         let lists: Vec<Vec<_>> = lists.iter().map(|list| seen.observations(list)).collect();
         for (&place, list) in places.iter().zip(lists) {
             if is_part {

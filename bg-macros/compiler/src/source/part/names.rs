@@ -10,7 +10,7 @@ use proc_macro2::Span;
 use super::PartFault;
 use super::flat::{Flat, is_at};
 use super::index::elements;
-use crate::fault::{Fault, Faults};
+use crate::fault::{Fault, Faults, near_miss};
 use crate::source::ast::{Expression, ExpressionKind, Item, Name, Observation, Port};
 use crate::source::walk::{Met, each_name, walk};
 
@@ -25,6 +25,8 @@ pub(super) struct Names {
     aliases: BTreeMap<String, String>,
     /// What parts inside observe.
     outputs: BTreeMap<String, Observation>,
+    /// The paths of parts inside.
+    parts: BTreeSet<String>,
     /// What the expressions of this level name.
     used: BTreeSet<String>,
 }
@@ -50,6 +52,7 @@ impl Names {
         for flat in inside {
             flat.names.iter().for_each(|name| names.declare(name));
             flat.uses.iter().for_each(|used| names.declare(&used.path));
+            names.parts.extend(flat.uses.iter().map(|used| used.path.clone()).filter(|path| !path.is_empty()));
             names.aliases.extend(flat.aliases.iter().cloned());
             let named = |output: &Observation| Some((output.name.as_ref()?.text.clone(), output.clone()));
             names.outputs.extend(flat.outputs.iter().filter_map(named));
@@ -114,6 +117,11 @@ impl Names {
             let path = Name::new(self.path(&name.text), value.span);
             // Of an output and a thing of one name an expression means the thing, as in a graph.
             let observed = if self.is_of_thing(&path.text) { None } else { self.observed(&path.text) };
+            if observed.is_none()
+                && let Some(fault) = self.of_part(&path.text)
+            {
+                faults.push(Fault::new(value.span, &fault));
+            }
             value.kind = observed.unwrap_or(ExpressionKind::Name(path));
         });
     }
@@ -157,6 +165,33 @@ impl Names {
         let axis = axis.map(|number| Expression { kind: ExpressionKind::Number(number), span });
         let axis = Expression { kind: ExpressionKind::Vector(axis.into()), span };
         Some(ExpressionKind::Call(Name::new("dot", span), vec![axis, value.clone()]))
+    }
+
+    /// The fault of a name that is a part's, or that nothing in a part has.
+    fn of_part(&self, name: &str) -> Option<PartFault> {
+        if self.parts.contains(name) {
+            return Some(PartFault::IsAPart { name: name.to_owned(), outputs: self.outputs_of(name) });
+        }
+        let ends = name.match_indices('.').map(|(at, _)| at);
+        let part = ends.map(|end| &name[..end]).rfind(|part| self.parts.contains(*part))?;
+        let inside = name[part.len() + 1..].split(['.', '[']).next().unwrap_or_default();
+        let path = format!("{part}.{inside}");
+        let is_in =
+            |known: &str| known.strip_prefix(&path).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']));
+        let mut known = self.declared.iter().chain(self.aliases.keys()).chain(self.outputs.keys());
+        if known.any(|known| is_in(known)) {
+            return None;
+        }
+        let outputs = self.outputs_of(part);
+        let all = self.declared.iter().chain(self.aliases.keys()).chain(&outputs).map(String::as_str);
+        let near = near_miss(&path, all.filter(|known| *known != part)).map(str::to_owned);
+        Some(PartFault::NotInPart { part: part.to_owned(), name: inside.to_owned(), near, outputs })
+    }
+
+    /// The outputs of the part at this path itself.
+    fn outputs_of(&self, part: &str) -> Vec<String> {
+        let is_own = |name: &&String| name.strip_prefix(part).is_some_and(|rest| rest.rfind('.') == Some(0));
+        self.outputs.keys().filter(is_own).cloned().collect()
     }
 
     /// Faults of numbers in brackets, and of arrays without.

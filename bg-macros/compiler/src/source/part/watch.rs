@@ -3,6 +3,8 @@
 //! In: the entries of `observe`, all statements of the level. Out: named expressions; `all of NAME` is what there is to
 //! see of it: of a part its outputs, of a body its pose and momenta, of a joint its force and motion.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::Span;
 
 use super::PartFault;
@@ -16,6 +18,8 @@ use crate::source::ast::{
 /// What is at hand: the statements of the level and what the names mean.
 pub(super) struct Seen<'a> {
     pub flat: &'a Flat,
+    /// The names of the uses of parts, also of such as are not there.
+    pub uses: &'a BTreeSet<String>,
     pub names: &'a mut Names,
     pub faults: &'a mut Faults,
 }
@@ -50,8 +54,10 @@ impl Seen<'_> {
     fn all(&mut self, name: &Name) -> Vec<Observation> {
         let path = self.names.path(&name.text);
         let found = self.all_of(&path, name.span);
-        if found.is_empty() {
-            self.faults.push(Fault::new(name.span, &self.nothing(&path)));
+        if found.is_empty()
+            && let Some(fault) = self.nothing(&path)
+        {
+            self.faults.push(Fault::new(name.span, &fault));
         }
         found
     }
@@ -72,13 +78,17 @@ impl Seen<'_> {
         found
     }
 
-    fn nothing(&self, path: &str) -> PartFault {
+    /// Why there is nothing to watch; none where that follows from another fault: there is no such part.
+    fn nothing(&self, path: &str) -> Option<PartFault> {
         let used = self.flat.uses.iter().find(|used| used.path == path);
         if let Some(used) = used {
-            return PartFault::WatchesNothing { part: used.shown() };
+            return Some(PartFault::WatchesNothing { part: used.shown() });
         }
-        let near = near_miss(path, self.names.declared()).map(str::to_owned);
-        PartFault::NothingToWatch { name: path.to_owned(), near }
+        if self.uses.contains(path) {
+            return None;
+        }
+        let near = near_miss(path, self.names.declared().filter(|known| *known != path)).map(str::to_owned);
+        Some(PartFault::NothingToWatch { name: path.to_owned(), near })
     }
 }
 

@@ -1,7 +1,8 @@
-//! Files that use parts of other files: `use "parts/shaft.bond";`.
+//! Files that use parts of other files, `use "parts/shaft.bond";`, and of the library, `use gears;`.
 //!
-//! In: the text of a file, what opens others. Out: the tokens of one text: the parts of all files that it uses, each
-//! file once, then what stands in the file itself. No longer occurs: `use`.
+//! In: the text of a file, what opens others; or a call of the macro, which uses the library only. Out: the tokens of one text: the
+//! parts of all files that it uses, each file once, then what stands in the file itself. Of the library there are only the parts
+//! that are used. No longer occurs: `use`, but for those of files in a call, which the parser has a fault for.
 //!
 //! Graphs of a used file are left alone, and its parts are no items of Rust: these are what the file itself has.
 
@@ -11,8 +12,9 @@ use std::path::{Path, PathBuf};
 use proc_macro2::{Delimiter, LexError, Span, TokenStream, TokenTree};
 
 use super::{parse, points};
-use crate::fault::{Explain, Fault, Faults};
+use crate::fault::{Explain, Fault, Faults, near_miss};
 use crate::source::ast::{PartPath, Source, used_parts};
+use crate::source::library;
 
 /// Files around a file that use each other: more than any library of parts has.
 const DEEPEST: usize = 64;
@@ -38,6 +40,8 @@ pub struct File {
     pub path: PathBuf,
     /// Its text.
     pub text: String,
+    /// Whether it is one of the library, which is in no folder.
+    pub is_of_library: bool,
     /// What the spans of its tokens call it.
     called: String,
 }
@@ -83,6 +87,8 @@ pub enum FileFault {
     Elsewhere { part: String, file: PathBuf },
     NoPart { file: PathBuf },
     NoPoints { file: PathBuf, reason: String },
+    NotInLibrary { name: String },
+    OfLibrary { part: String, library: &'static str },
     NoText,
 }
 
@@ -95,6 +101,8 @@ impl Explain for FileFault {
             Self::Elsewhere { .. } => "BG0904",
             Self::NoPart { .. } => "BG0905",
             Self::NoPoints { .. } => "BG0907",
+            Self::NotInLibrary { .. } => "BG0908",
+            Self::OfLibrary { .. } => "BG0302",
             Self::NoText => "BG0906",
         }
     }
@@ -113,6 +121,10 @@ impl Explain for FileFault {
             }
             Self::NoPart { file } => format!("`{}` has no part to use", file.display()),
             Self::NoPoints { file, reason } => format!("`{}` has no points of a table: {reason}", file.display()),
+            Self::NotInLibrary { name } => format!("the library of parts has no file `{name}`"),
+            Self::OfLibrary { part, library } => {
+                format!("`{part}` is the name of a part of the library, too, which `use {library};` brings")
+            }
             Self::NoText => "a bracket, a quote or a character is out of place".to_owned(),
         }
     }
@@ -127,11 +139,22 @@ impl Explain for FileFault {
             }
             Self::Circle { .. } => "move what both need into a file of its own, and use that".to_owned(),
             Self::Deep | Self::Many => "write parts that belong together into one file".to_owned(),
-            Self::Elsewhere { .. } => "add a `use` of that file".to_owned(),
+            Self::Elsewhere { part, .. } => match library::home(part) {
+                Some(library) => format!("write `use {library};` above it"),
+                None => "add a `use` of that file".to_owned(),
+            },
             Self::NoPart { .. } => "make a part of what is to be used, or remove this".to_owned(),
             Self::NoPoints { .. } => "write two columns of numbers separated by commas, with a head such as \
                                       `speed [rpm],torque [N*m]` or without"
                 .to_owned(),
+            Self::NotInLibrary { name } => match near_miss(name, library::names()) {
+                Some(near) => format!("write `use {near};`"),
+                None => {
+                    let known: Vec<String> = library::names().map(|name| format!("`{name}`")).collect();
+                    format!("write one of {}, or the path of a file of yours in quotes", known.join(", "))
+                }
+            },
+            Self::OfLibrary { .. } => "give yours another name".to_owned(),
             Self::NoText => "close what is open, and quote what is text".to_owned(),
         }
     }
@@ -140,9 +163,24 @@ impl Explain for FileFault {
 /// The text of the file at `path` with the files that it uses.
 #[must_use]
 pub fn gather(path: &Path, first: Opened, open: Open<'_>) -> Gathered {
-    let mut gathering = Gathering { open, known: Vec::new(), around: Vec::new(), gathered: Gathered::default() };
-    gathering.file(path, first, true);
+    let mut gathering = Gathering::new(open);
+    gathering.file(path, first, Of::First);
     gathering.finish()
+}
+
+/// A call of the macro with the parts of the library that it uses.
+#[must_use]
+pub fn call(tokens: TokenStream) -> (TokenStream, Faults) {
+    let own = pieces(tokens.clone(), false);
+    if !own.iter().any(|piece| matches!(piece, Piece::Library(..))) {
+        return (tokens, Faults::new());
+    }
+    let open: Open<'_> = &|path| Err(format!("cannot read {}", path.display()));
+    let mut gathering = Gathering::new(open);
+    let place = gathering.begin(Path::new(""), Opened { file: PathBuf::new(), text: String::new() }, Of::First);
+    gathering.own(place, own, Of::First);
+    let Gathered { tokens, faults, .. } = gathering.finish();
+    (tokens, faults)
 }
 
 /// The text of a file alone, without what it uses; tables of other files have two points.
@@ -152,19 +190,37 @@ pub fn gather(path: &Path, first: Opened, open: Open<'_>) -> Gathered {
 pub fn alone(text: &str) -> Result<TokenStream, Fault> {
     let tokens = text.parse().map_err(|fault: LexError| Fault::new(fault.span(), &FileFault::NoText))?;
     let tokens = points::replaced(tokens, &mut |_, span| points::points("0,0\n1,0", span).ok());
-    let own = pieces(tokens).into_iter().filter_map(|piece| match piece {
-        Piece::Use(..) => None,
+    let own = pieces(tokens, true).into_iter().filter_map(|piece| match piece {
+        Piece::Use(..) | Piece::Library(..) => None,
         Piece::Graph(tokens) | Piece::Part(tokens) | Piece::Other(tokens) => Some(tokens),
     });
     Ok(own.flatten().collect())
+}
+
+/// What a file is among those of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Of {
+    /// The text itself.
+    First,
+    /// A file of its user's.
+    User,
+    /// A file of the library.
+    Library,
 }
 
 /// A file whose uses have been followed.
 #[derive(Default)]
 struct Known {
     file: PathBuf,
-    own: TokenStream,
+    /// Its pieces: parts and graphs.
+    own: Vec<TokenStream>,
     uses: Vec<usize>,
+}
+
+impl Known {
+    fn source(&self) -> Result<Source, Faults> {
+        if self.own.is_empty() { Ok(Source::default()) } else { parse(self.own.iter().cloned().collect()) }
+    }
 }
 
 struct Gathering<'o> {
@@ -172,45 +228,84 @@ struct Gathering<'o> {
     known: Vec<Known>,
     /// The files that are being read, the outermost first.
     around: Vec<usize>,
+    /// The files in the order in which they have been read.
+    read: Vec<usize>,
     gathered: Gathered,
 }
 
-impl Gathering<'_> {
-    /// Reads a file, after those that it uses, and gives its place.
-    fn file(&mut self, path: &Path, Opened { file, text }: Opened, is_first: bool) -> usize {
-        let place = self.known.len();
+impl<'o> Gathering<'o> {
+    fn new(open: Open<'o>) -> Self {
+        Self { open, known: Vec::new(), around: Vec::new(), read: Vec::new(), gathered: Gathered::default() }
+    }
+
+    /// The place of a file that is to be read.
+    fn begin(&mut self, path: &Path, Opened { file, text }: Opened, of: Of) -> usize {
         self.known.push(Known { file, ..Known::default() });
-        let tokens = text.parse::<TokenStream>().map_err(|fault| fault.span());
+        let is_of_library = of == Of::Library;
+        self.gathered.files.push(File { path: path.to_owned(), text, is_of_library, called: String::new() });
+        self.known.len() - 1
+    }
+
+    /// Reads a file, after those that it uses, and gives its place.
+    fn file(&mut self, path: &Path, opened: Opened, of: Of) -> usize {
+        let tokens = opened.text.parse::<TokenStream>().map_err(|fault| fault.span());
         let called = match &tokens {
             Ok(tokens) => tokens.clone().into_iter().next().map_or_else(String::new, |first| first.span().file()),
             Err(span) => span.file(),
         };
-        self.gathered.files.push(File { path: path.to_owned(), text, called });
+        let place = self.begin(path, opened, of);
+        self.gathered.files[place].called = called;
         match tokens {
             Ok(tokens) => {
                 let tokens = points::replaced(tokens, &mut |name, span| self.points(place, name, span));
-                self.around.push(place);
-                self.known[place].own =
-                    pieces(tokens).into_iter().filter_map(|piece| self.own(place, piece, is_first)).collect();
-                self.around.pop();
-                self.gathered.tokens.extend(self.known[place].own.clone());
+                self.own(place, pieces(tokens, true), of);
             }
             Err(span) => self.fault(span, &FileFault::NoText),
         }
         place
     }
 
+    /// Follows what the pieces of a file use, and keeps what is left of them.
+    fn own(&mut self, place: usize, pieces: Vec<Piece>, of: Of) {
+        self.around.push(place);
+        self.known[place].own = pieces.into_iter().filter_map(|piece| self.piece(place, piece, of)).collect();
+        self.around.pop();
+        self.read.push(place);
+    }
+
     /// What is left of a piece of a file where the file is one of several.
-    fn own(&mut self, place: usize, piece: Piece, is_first: bool) -> Option<TokenStream> {
+    fn piece(&mut self, place: usize, piece: Piece, of: Of) -> Option<TokenStream> {
         match piece {
             Piece::Use(path, span) => {
                 self.used(place, &path, span);
                 None
             }
-            Piece::Graph(_) if !is_first => None,
-            Piece::Part(tokens) if !is_first => Some(without_visibility(tokens)),
+            Piece::Library(name, span) => {
+                self.library(place, &name, span);
+                None
+            }
+            Piece::Graph(_) if of != Of::First => None,
+            Piece::Part(tokens) if of != Of::First => Some(without_visibility(tokens)),
             Piece::Graph(tokens) | Piece::Part(tokens) | Piece::Other(tokens) => Some(tokens.into_iter().collect()),
         }
+    }
+
+    /// A file of the library.
+    fn library(&mut self, by: usize, name: &str, span: Span) {
+        let Some(text) = library::text(name) else {
+            return self.fault(span, &FileFault::NotInLibrary { name: name.to_owned() });
+        };
+        let path = library::path(name);
+        let known = (0..self.known.len()).find(|&place| self.is_of_library(place) && self.known[place].file == path);
+        let place = known.unwrap_or_else(|| {
+            let opened = Opened { file: path.clone(), text: text.to_owned() };
+            self.file(&path, opened, Of::Library)
+        });
+        self.known[by].uses.push(place);
+    }
+
+    fn is_of_library(&self, place: usize) -> bool {
+        self.gathered.files[place].is_of_library
     }
 
     fn used(&mut self, by: usize, path: &str, span: Span) {
@@ -221,7 +316,8 @@ impl Gathering<'_> {
             return self.fault(span, &FileFault::Many);
         }
         let Some((path, opened)) = self.opened(by, path, span) else { return };
-        let known = self.known.iter().position(|known| known.file == opened.file);
+        let is_same = |place: &usize| !self.is_of_library(*place) && self.known[*place].file == opened.file;
+        let known = (0..self.known.len()).find(is_same);
         if let Some(start) = known.and_then(|known| self.around.iter().position(|around| *around == known)) {
             let circle = self.around[start..].iter().chain([&self.around[start]]);
             let files = circle.map(|place| self.gathered.files[*place].path.clone()).collect();
@@ -229,7 +325,7 @@ impl Gathering<'_> {
         }
         let place = known.unwrap_or_else(|| {
             let before = self.gathered.faults.len();
-            let place = self.file(&path, opened, false);
+            let place = self.file(&path, opened, Of::User);
             let Known { own, uses, .. } = &self.known[place];
             if own.is_empty() && uses.is_empty() && self.gathered.faults.len() == before {
                 self.fault(span, &FileFault::NoPart { file: path });
@@ -243,8 +339,7 @@ impl Gathering<'_> {
     fn points(&mut self, by: usize, name: &str, span: Span) -> Option<TokenStream> {
         let (path, Opened { file, text }) = self.opened(by, name, span)?;
         let points = points::points(&text, span);
-        self.known.push(Known { file, ..Known::default() });
-        self.gathered.files.push(File { path: path.clone(), text, called: String::new() });
+        self.begin(&path, Opened { file, text }, Of::User);
         points.map_err(|reason| self.fault(span, &FileFault::NoPoints { file: path, reason })).ok()
     }
 
@@ -261,30 +356,71 @@ impl Gathering<'_> {
         }
     }
 
-    /// Each file uses what it names.
+    /// Each file uses what it names; of the library what is used is there.
     fn finish(mut self) -> Gathered {
+        let order = std::mem::take(&mut self.read);
+        let own = |gathering: &Self| order.iter().flat_map(|&place| gathering.known[place].own.clone()).collect();
         if self.known.len() == 1 || !self.gathered.faults.is_empty() {
+            self.gathered.tokens = own(&self);
             return self.gathered;
         }
-        let own = self.known.iter().map(|known| known.own.clone());
-        let read = own.map(|own| if own.is_empty() { Ok(Source::default()) } else { parse(own) });
         // Of files with faults of syntax not all parts are known.
-        let Ok(sources) = read.collect::<Result<Vec<Source>, _>>() else { return self.gathered };
+        let read: Result<Vec<Source>, _> = self.known.iter().map(Known::source).collect();
+        if let Ok(sources) = read {
+            self.find_parts(&sources);
+            self.leave_what_nobody_uses(&sources);
+        }
+        self.gathered.tokens = own(&self);
+        self.gathered
+    }
+
+    /// A part of another file stands in a file that is used, and its name is no other one's.
+    fn find_parts(&mut self, sources: &[Source]) {
+        let has = |file: usize, name: &str| sources[file].parts.iter().any(|part| part.name.text == name);
         for place in 0..sources.len() {
             let mut seen = BTreeSet::from([place]);
             self.reach(place, &mut seen);
             for path in named(&sources[place]) {
-                let has = |file: &usize| sources[*file].parts.iter().any(|part| part.name.text == path.name.text);
-                if seen.iter().any(has) {
+                let name = &path.name.text;
+                if seen.iter().any(|&file| has(file, name)) {
                     continue;
                 }
-                if let Some(file) = (0..sources.len()).find(has) {
+                if let Some(file) = (0..sources.len()).find(|&file| has(file, name)) {
                     let file = self.gathered.files[file].path.clone();
-                    self.fault(path.name.span, &FileFault::Elsewhere { part: path.name.text.clone(), file });
+                    self.fault(path.name.span, &FileFault::Elsewhere { part: name.clone(), file });
                 }
             }
+            let is_twice = |name: &str| (0..sources.len()).any(|file| self.is_of_library(file) && has(file, name));
+            let own = sources[place].parts.iter().filter(|_| !self.is_of_library(place));
+            let twice: Vec<_> = own.filter(|part| is_twice(&part.name.text)).map(|part| part.name.clone()).collect();
+            for name in twice {
+                let library = library::home(&name.text).unwrap_or_default();
+                self.fault(name.span, &FileFault::OfLibrary { part: name.text, library });
+            }
         }
-        self.gathered
+    }
+
+    /// Takes parts of the library away that neither the text nor those which it uses name.
+    fn leave_what_nobody_uses(&mut self, sources: &[Source]) {
+        let (of_library, of_user): (Vec<usize>, Vec<usize>) =
+            (0..sources.len()).partition(|&place| self.is_of_library(place));
+        let mut used: BTreeSet<&str> =
+            of_user.iter().flat_map(|&place| named(&sources[place])).map(|path| path.name.text.as_str()).collect();
+        let parts = || of_library.iter().flat_map(|&place| &sources[place].parts);
+        loop {
+            let inside = parts().filter(|part| used.contains(part.name.text.as_str()));
+            let inside: Vec<&PartPath> = inside.flat_map(|part| used_parts(&part.items)).collect();
+            let before = used.len();
+            used.extend(inside.iter().map(|path| path.name.text.as_str()));
+            if used.len() == before {
+                break;
+            }
+        }
+        for &place in &of_library {
+            let mut parts = sources[place].parts.iter();
+            // Each piece of such a file is a part.
+            self.known[place].own.retain(|_| parts.next().is_some_and(|part| used.contains(part.name.text.as_str())));
+        }
     }
 
     /// Adds the files that one uses, and those that these use.
@@ -311,6 +447,8 @@ fn named(source: &Source) -> impl Iterator<Item = &PartPath> {
 enum Piece {
     /// `use "PATH";`, with the place of the path.
     Use(String, Span),
+    /// `use NAME;`, with the place of the name.
+    Library(String, Span),
     /// `graph NAME { ... }`
     Graph(Vec<TokenTree>),
     /// `part NAME { ... }`
@@ -319,13 +457,23 @@ enum Piece {
     Other(Vec<TokenTree>),
 }
 
-/// A file in pieces, each as far as its braces.
-fn pieces(tokens: TokenStream) -> Vec<Piece> {
+/// A file or a call in pieces, each as far as its braces. A call uses no files.
+fn pieces(tokens: TokenStream, is_file: bool) -> Vec<Piece> {
     let (mut pieces, mut open) = (Vec::new(), Vec::new());
     let tokens: Vec<TokenTree> = tokens.into_iter().collect();
     let mut rest = tokens.as_slice();
     while let [first, after @ ..] = rest {
         if open.is_empty()
+            && let [word, TokenTree::Ident(name), TokenTree::Punct(end), others @ ..] = rest
+            && is_word(word, "use")
+            && end.as_char() == ';'
+        {
+            pieces.push(Piece::Library(name.to_string(), name.span()));
+            rest = others;
+            continue;
+        }
+        if open.is_empty()
+            && is_file
             && let [word, TokenTree::Literal(path), TokenTree::Punct(end), others @ ..] = rest
             && is_word(word, "use")
             && end.as_char() == ';'

@@ -1,0 +1,44 @@
+//! The library of parts, `use gears;`: each part beside a closed form, or beside equations of its own.
+
+mod machines;
+mod page;
+mod planets;
+mod transmissions;
+
+use bg_model::dynamics::{Dynamics as _, Machine as _};
+
+use super::hand::run;
+use super::text::{graphs, model, outputs};
+
+/// A run of a text's only graph: what its outputs are at the end, and how many states it has.
+struct Ran {
+    names: Vec<&'static str>,
+    values: Vec<f64>,
+    states: usize,
+}
+
+impl Ran {
+    /// The output of this name.
+    fn of(&self, name: &str) -> f64 {
+        let index = self.names.iter().position(|known| *known == name);
+        self.values[index.unwrap_or_else(|| panic!("no output {name} of {:?}", self.names))]
+    }
+
+    /// Asserts what an output is, to `part` of that or of 1.
+    fn is(&self, name: &str, expected: f64, part: f64) {
+        let found = self.of(name);
+        assert!((found - expected).abs() <= part * expected.abs().max(1.0), "{name} is {found}, not {expected}");
+    }
+}
+
+/// A graph with these statements, and `use`s before it, after `t_end`.
+fn after(t_end: f64, uses: &str, statements: &str) -> Ran {
+    let graphs = graphs(&format!("{uses} graph Tried {{ {statements} }}"));
+    // The graph's literal model, or the scene that stands for it.
+    let model = model(&graphs, graphs[0].models[0].description.name, &[]);
+    let start = model.start().unwrap_or_else(|error| panic!("{error}"));
+    let finish = run(&*model, &start, t_end);
+    let names = model.description().outputs.iter().map(|output| output.name).collect();
+    let values = outputs(&*model, finish.t, finish.x.as_slice(), &finish.negative);
+    Ran { names, values, states: model.states() }
+}
