@@ -11,6 +11,7 @@ pub const TEXT: &str = "//! A machine.
 use bg_model::bond_graph;
 
 bond_graph! {
+    use gears;
     /// A leg of the machine.
     part /*Leg*/Leg {
         /// How stiff the knee is.
@@ -43,11 +44,15 @@ bond_graph! {
         friction /*rub*/rub on /*pin in rub*/pin { coulomb 0.1; }
         part /*left*/left: /*Leg in left*/Leg { /*rate in left*/rate = 2000; }
         part /*row*/row[2]: /*Leg in row*/Leg;
+        part /*pair*/pair: /*GearPair*/GearPair { /*ratio in pair*/ratio = 4; }
+        1 /*hub*/hub: rotation; I /*wheel*/wheel = 2;
+        /*pin in chain*/pin.spin -> /*pair in chain*/pair.first; /*pair again in chain*/pair.second -> /*hub in chain*/hub -> wheel;
 
         observe {
             /*angle*/angle: rad = /*rod in observe*/rod.angle;
             force: N = /*pin in observe*/pin./*force*/force.x;
             /*left in observe*/left./*way in observe*/way;
+            /*pair in observe*/pair./*torque in observe*/torque;
             high: m = /*row in observe*/row[1]./*foot in observe*/foot./*tip in observe*/tip.position.y;
         }
 

@@ -14,7 +14,7 @@ use machine::{TEXT, at, mark_at, position};
 use serde_json::{Value, json};
 
 /// A name: its declaration, then all its uses in the order of the text.
-const NAMES: [&[&str]; 18] = [
+const NAMES: [&[&str]; 19] = [
     &["Leg", "Leg in left", "Leg in row"],
     &["rate", "rate in knee", "rate in left"],
     &["foot", "foot in knee", "foot in way", "foot in observe"],
@@ -27,16 +27,17 @@ const NAMES: [&[&str]; 18] = [
     &["pivot", "pivot in pin"],
     &["rod", "rod in pin", "rod in observe"],
     &["end", "end in start", "end in pin"],
-    &["pin", "pin in motor", "pin in rub", "pin in observe", "pin in scene"],
+    &["pin", "pin in motor", "pin in rub", "pin in chain", "pin in observe", "pin in scene"],
     &["motor", "motor in scene"],
     &["rub", "rub in scene"],
     &["row", "row in observe"],
+    &["pair", "pair in chain", "pair again in chain", "pair in observe"],
     &["left", "left in observe"],
     &["Still", "Still in Rust"],
 ];
 
 /// What is shown of a name, at any of its places.
-const SHOWN: [(&str, &[&str]); 10] = [
+const SHOWN: [(&str, &[&str]); 13] = [
     ("length in end", &["length: f64", "Length of the rod.", "Unit: m.", "Default 0.6"]),
     ("rate in knee", &["rate: Parameter", "How stiff the knee is.", "param rate: N/m = 3000;"]),
     ("torque in motor", &["torque: Input", "What turns the pin.", "Unit: N*m."]),
@@ -53,20 +54,24 @@ const SHOWN: [(&str, &[&str]); 10] = [
     ("force", &["force: Vector", "Force on the second body, inertial axes. Unit: N."]),
     ("left in observe", &["left: Leg", "rate = 2000;"]),
     ("way in observe", &["way: Value", "way: m = foot.position.x"]),
+    ("pair in observe", &["pair: GearPair", "ratio = 4;"]),
+    ("GearPair", &["struct GearPair", "A rigid pair of gears, one outside of the other"]),
+    ("ratio in pair", &["ratio: Parameter", "Teeth of the second gear over those of the first."]),
     ("Machine", &["struct Machine", "A rod on a pin.", "# States"]),
 ];
 
 /// What is offered at the bar in place of a piece of text: all of it, or some where there is more to see.
-const OFFERED: [(&str, &str, &[&str]); 6] = [
+const OFFERED: [(&str, &str, &[&str]); 7] = [
     ("pin./*force*/force.x", "pin.|", &["force", "moment", "gap", "angle", "speed"]),
     ("pin./*force*/force.x", "pin.fo|", &["force", "moment", "gap", "angle", "speed"]),
     ("pin./*force*/force.x", "pin.force.|", &["x", "y", "z"]),
     ("left./*way in observe*/way;", "left.|;", &["rate", "foot", "ground", "knee", "way"]),
+    ("pair./*torque in observe*/torque;", "pair.|;", &["ratio", "first", "second", "mesh", "torque"]),
     ("rod./*end in pin*/end)", "rod.|)", &["end", "position", "velocity", "orientation"]),
     (
         "/*rod in observe*/rod.angle",
         "|",
-        &["length", "mass", "torque", "ground", "rod", "pin", "motor", "rub", "left", "row"],
+        &["length", "mass", "torque", "ground", "rod", "pin", "motor", "rub", "left", "row", "pair", "hub", "wheel"],
     ),
 ];
 

@@ -191,7 +191,7 @@ fn check(
             if let (Some(declared), Quantity::Known(found)) = (declared, found)
                 && declared != found
             {
-                let what = format!("`{}` is declared in the first and has the second", definition.name.text);
+                let what = format!("`{}` is declared in one unit, but its value has another", definition.name.text);
                 faults
                     .push(Fault::new(definition.value.span, &GraphFault::Units { what, left: declared, right: found }));
             }

@@ -34,8 +34,8 @@ pub struct Offered {
 /// The pendulum of `bond new`.
 const FIRST: &str = include_str!("../../src/first.bond");
 
-/// Mechanisms with loops in space, examples of the program `bond`: names, titles, what to look at, texts.
-const IN_SPACE: [[&str; 4]; 4] = [
+/// Mechanisms with loops, examples of the program `bond`: names, titles, what to look at, texts.
+const WITH_LOOPS: [[&str; 4]; 5] = [
     [
         "governor",
         "A Watt governor",
@@ -59,6 +59,12 @@ const IN_SPACE: [[&str; 4]; 4] = [
         "A Stewart platform",
         "Six legs and a plate: thirteen bodies in five loops. Move the sliders `rise` and `spin`.",
         include_str!("../../examples/stewart_platform.bond"),
+    ],
+    [
+        "planetary",
+        "A planetary gear set",
+        "Gears of the library between bodies: look at `carrier`, 0.3 of `sun`, and at the marks on the planets.",
+        include_str!("../../examples/planetary.bond"),
     ],
 ];
 
@@ -90,7 +96,7 @@ pub fn all() -> Result<Vec<Offered>, String> {
         Ok(of_example(example, text))
     });
     let offered: Vec<Offered> = offered.collect::<Result<_, String>>()?;
-    let in_space = IN_SPACE.map(|[name, title, about, text]| Offered {
+    let in_space = WITH_LOOPS.map(|[name, title, about, text]| Offered {
         name: name.to_owned(),
         title: title.to_owned(),
         about: about.to_owned(),

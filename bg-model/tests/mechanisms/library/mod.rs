@@ -33,7 +33,12 @@ impl Ran {
 
 /// A graph with these statements, and `use`s before it, after `t_end`.
 fn after(t_end: f64, uses: &str, statements: &str) -> Ran {
-    let graphs = graphs(&format!("{uses} graph Tried {{ {statements} }}"));
+    of_text(t_end, &format!("{uses} graph Tried {{ {statements} }}"))
+}
+
+/// The graph of a text after `t_end`.
+fn of_text(t_end: f64, text: &str) -> Ran {
+    let graphs = graphs(text);
     // The graph's literal model, or the scene that stands for it.
     let model = model(&graphs, graphs[0].models[0].description.name, &[]);
     let start = model.start().unwrap_or_else(|error| panic!("{error}"));

@@ -40,6 +40,9 @@ fn graph(part: &LibraryPart, left: usize, clauses: &str) -> String {
         .enumerate()
         .skip(left)
         .map(|(k, (port, domain))| match *domain {
+            _ if port.ends_with("[3]") => {
+                format!("1 j{k}[3]: {domain}; I i{k} = 1; p.{} -> j{k} -> i{k}; ", port.trim_end_matches("[3]"))
+            }
             "rotation" | "translation" => format!("1 j{k}: {domain}; I i{k} = 1; p.{port} -> j{k} -> i{k}; "),
             _ => format!("0 j{k}: {domain}; R r{k} = 1; p.{port} -> j{k} -> r{k}; "),
         })
@@ -155,7 +158,7 @@ fn of_bonds(part: &LibraryPart) -> Vec<Mistake> {
     let near = format!("{}{}", &name[..name.len() - 2], &name[name.len() - 1..]);
     let wrong = if parameter.range.lower_included { -1.0 } else { parameter.range.lower };
     let unit = if parameter.unit == "kg" { "A" } else { "kg" };
-    let (port, _) = ports(part)[0];
+    let port = ports(part)[0].0.trim_end_matches("[3]");
     let other = graph(part, 1, "")
         .replace("observe", &format!("0 wall: thermal; R heat = 1; p.{port} -> wall -> heat; observe"));
     vec![

@@ -1,8 +1,10 @@
 //! Planetary sets, and gears on bodies.
 
+use std::f64::consts::PI;
+
 use bg_model::nalgebra::{Matrix2, Vector2};
 
-use super::after;
+use super::{after, of_text};
 
 /// A sun of 1e-3, a ring of 0.02 and a carrier of 0.05 kg*m^2.
 fn set(t_end: f64, part: &str, more: &str, statements: &str) -> super::Ran {
@@ -144,10 +146,77 @@ fn gears_on_bodies_turn_in_their_carrier() {
 }
 
 #[test]
+fn teeth_between_bodies_load_their_pins() {
+    let ran = after(
+        1.0,
+        "use gears;",
+        "ground { point O = [0, 0, 0]; }
+        body carrier { mass 2; inertia [0.02, 0.02, 0.02]; point hole = [0.05, 0, 0]; start at [0, 0, 0]; start spin [0, 0, 1]; }
+        body planet { mass 0.5; inertia [1e-4, 1e-4, 2e-4]; start at [0.05, 0, 0]; start velocity [0, 0.05, 0]; start spin [0, 0, guess(0)]; }
+        body sun { mass 1; inertia [1e-3, 1e-3, 1e-3]; start at [0, 0, 0]; start spin [0, 0, guess(5)]; }
+        body ring { mass 1; inertia [5e-3, 5e-3, 5e-3]; start at [0, 0, 0]; start spin [0, 0, 5]; }
+        joint main: revolute z (ground.O -> carrier) { rigid; } joint sun_pin: revolute z (ground.O -> sun) { rigid; }
+        joint ring_pin: revolute z (ground.O -> ring) { rigid; } joint pin: revolute z (carrier.hole -> planet) { rigid; }
+        part inner: BodyGearPair { first_radius = 30 mm; second_radius = 20 mm;
+            away_x = planet.position.x - sun.position.x; away_y = planet.position.y - sun.position.y; }
+        part outer: BodyInternalGearPair { first_radius = 20 mm; second_radius = 70 mm;
+            away_x = ring.position.x - planet.position.x; away_y = ring.position.y - planet.position.y; }
+        sun.translation -> inner.first; sun.rotation -> inner.first_turn; planet.translation -> inner.second; planet.rotation -> inner.second_turn;
+        planet.translation -> outer.first; planet.rotation -> outer.first_turn; ring.translation -> outer.second; ring.rotation -> outer.second_turn;
+        drive motor on sun_pin torque = 0.1;
+        observe { sun: rad/s = sun.angular_velocity.z; carrier: rad/s = carrier.angular_velocity.z; ring: rad/s = ring.angular_velocity.z;
+            planet: rad/s = planet.angular_velocity.z; all of inner; all of outer; along: N = dot(carrier.x_axis, pin.force);
+            across: N = dot(carrier.y_axis, pin.force); on_sun: N = norm(sun_pin.force) }
+        scenes only; scene Planar { expect planar; }",
+    );
+    // Lagrange's equations in the speeds of carrier and ring.
+    let ratio = 70.0 / 30.0;
+    let sun: Vector2<f64> = Vector2::new(1.0 + ratio, -ratio);
+    let planet: Vector2<f64> = Vector2::new(1.0, 0.0) - 1.5 * (sun - Vector2::new(1.0, 0.0));
+    let inertia = Matrix2::new(0.02 + 0.5 * 0.05 * 0.05, 0.0, 0.0, 5e-3)
+        + 1e-3 * sun * sun.transpose()
+        + 2e-4 * planet * planet.transpose();
+    let gains: Vector2<f64> = inertia.try_inverse().expect("definite") * sun * 0.1;
+    let speeds = Vector2::new(1.0, 5.0) + gains;
+    ran.is("carrier", speeds[0], 1e-9);
+    ran.is("ring", speeds[1], 1e-9);
+    ran.is("sun", sun.dot(&speeds), 1e-9);
+    ran.is("planet", planet.dot(&speeds), 1e-9);
+    // What sun and ring do not keep of their torques goes through the teeth, and both forces through the planet's pin.
+    let inner = (0.1 - 1e-3 * sun.dot(&gains)) / 0.03;
+    let outer = -5e-3 * gains[1] / 0.07;
+    ran.is("inner.force", inner, 1e-9);
+    ran.is("outer.force", outer, 1e-9);
+    ran.is("on_sun", inner, 1e-9);
+    ran.is("across", 0.5 * 0.05 * gains[0] - inner - outer, 1e-9);
+    ran.is("along", -0.5 * 0.05 * speeds[0].powi(2), 1e-9);
+}
+
+#[test]
+fn the_planetary_set_of_the_examples_has_one_freedom() {
+    const TEXT: &str = include_str!("../../../bond/examples/planetary.bond");
+    let ran = of_text(0.1, TEXT);
+    // About the sun's speed w: the carrier has 0.3 of it, the planets -0.75.
+    let gear = |radius: f64| {
+        let disc = 7850.0 * PI * radius.powi(2) * 0.01;
+        let mark = 7850.0 * 1.6 * radius * 0.006 * 0.014;
+        (disc + mark, disc * radius.powi(2) / 2.0 + mark * ((1.6 * radius).powi(2) + 0.006_f64.powi(2)) / 12.0)
+    };
+    let ((_, sun), (mass, planet)) = (gear(0.03), gear(0.02));
+    let inertia = sun + 0.3_f64.powi(2) * (4e-4 + 3.0 * mass * 0.05_f64.powi(2)) + 0.75_f64.powi(2) * 3.0 * planet;
+    // The torque is between carrier and sun; the brake takes 0.05 N*m*s/rad of the carrier.
+    let (last, decay) = (0.7 * 0.05 / (0.05 * 0.09), 0.05 * 0.09 / inertia);
+    let w = last + (3.0 * PI - last) * (-decay * 0.1_f64).exp();
+    ran.is("sun", w * 30.0 / PI, 1e-9);
+    ran.is("carrier", 0.3 * w * 30.0 / PI, 1e-9);
+    ran.is("planet", -0.75 * w * 30.0 / PI, 1e-9);
+}
+
+#[test]
 fn a_pinion_on_a_body_drives_a_rack_on_another() {
     for (library, part, ratio, ports, k) in [
         ("gears", "JointRackAndPinion", "radius = 30 mm", ["pinion", "rack"], 0.03),
-        ("screws", "JointScrew", "lead = 50 mm/rev", ["shaft", "nut"], 0.05 / (2.0 * std::f64::consts::PI)),
+        ("screws", "JointScrew", "lead = 50 mm/rev", ["shaft", "nut"], 0.05 / (2.0 * PI)),
     ] {
         let [first, second] = ports;
         let ran = after(

@@ -71,6 +71,10 @@ impl Explain for CausalFault {
                 }
             }
             F::Derivative { name, .. } => format!("let an R sit in series with `{name}`, or merge the two C into one"),
+            F::OneWay { symbol: "TF" | "MTF", .. } => {
+                "hold the two flows together by an `rSe`; between two joints a gear is `JointGearPair` of the library"
+                    .to_owned()
+            }
             F::OneWay { name, .. } => format!("write the law of `{name}` as an expression of the other variable"),
         }
     }

@@ -214,7 +214,7 @@ impl Resolver {
             let (shape, quantity) = types.declared(&observation.value, declared, &mut faults);
             let unit = match (declared, quantity) {
                 (Some(declared), Quantity::Known(found)) if declared.dimension != found => {
-                    let what = format!("`{}` is declared in the first and has the second", observation.name);
+                    let what = format!("`{}` is declared in one unit, but its value has another", observation.name);
                     let fault = GraphFault::Units { what, left: declared.dimension, right: found };
                     faults.push(Fault::new(observation.value.span, &fault));
                     String::new()

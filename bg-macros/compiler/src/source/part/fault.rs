@@ -116,7 +116,7 @@ impl Explain for PartFault {
             F::SameIndex { .. } => "give one of them another name".to_owned(),
             F::EmptyRange { .. } => "write the smaller number first: `0..20` are the numbers from 0 to 19".to_owned(),
             F::TooMany { .. } => "make the range smaller".to_owned(),
-            F::OutsideRange { .. } => "change the value, or the range in the part".to_owned(),
+            F::OutsideRange { .. } => "change the value".to_owned(),
             F::Unused { .. } => "remove it, or use it".to_owned(),
             F::NothingToStart { .. } => "write the path of a body, or of a point of it".to_owned(),
             F::StartTwice { .. } => "remove one of the two".to_owned(),
