@@ -39,7 +39,8 @@ debug_is_display!(Impossible);
 impl Requirement {
     /// What is wrong with the value.
     fn said_of(&self, value: f64) -> String {
-        match self.unit {
+        // A pure number has no unit in print.
+        match self.unit.map(|unit| if unit == "1" { "" } else { unit }) {
             Some(unit) if value > 0.0 => {
                 format!(" is {}, too near 0 to calculate with", format!("{value:e} {unit}").trim_end())
             }
@@ -94,6 +95,7 @@ mod tests {
         parameters: &["a"],
     };
     static ALL: [Requirement; 3] = [MASS, STIFFNESS, TENSOR];
+    static SLIP: [Requirement; 1] = [Requirement { subject: "the slip", unit: Some("1"), parameters: &[], ..MASS }];
 
     #[test]
     fn zero_is_too_little_for_some() {
@@ -120,6 +122,8 @@ mod tests {
             "the mass of body `rod` is -2 kg; it must be above 0; it depends on `length`, `density`"
         );
         assert_eq!(text(&[1.0, -1.0, 1.0]), "the stiffness of `pin` is -1 N/m; it must be above 0");
+        let slip = require(&SLIP, &[-0.5]).unwrap_err().to_string();
+        assert_eq!(slip, "the slip is -0.5; it must be above 0");
         assert_eq!(text(&[1.0, 1.0, -1.0]), "the inertia of body `rod` must be symmetric; it depends on `a`");
     }
 }

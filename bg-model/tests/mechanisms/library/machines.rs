@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use bg_model::nalgebra::{Matrix2, Vector2};
 
-use super::after;
+use super::{after, refused};
 
 /// What x' = a x makes of a start.
 fn linear(a: Matrix2<f64>, start: Vector2<f64>, t: f64) -> Vector2<f64> {
@@ -67,6 +67,27 @@ fn an_induction_motor_runs_up_by_kloss() {
     // At 70 % of the voltage half the torque.
     let weak = after(1e-9, "use motors;", &part.replace("inertia", "voltage = 70 percent; inertia"));
     weak.is("motor.torque", 0.49 * 2.0 * 2.6 * rated / (1.0 / slip + slip), 1e-9);
+}
+
+#[test]
+fn plates_that_contradict_themselves_are_refused() {
+    let shaft = "1 shaft: rotation; motor.shaft -> shaft; I wheel = 0.05; shaft -> wheel; observe { all of motor }";
+    let said = |uses: &str, statements: &str, words: &[&str]| {
+        let found = refused(uses, statements);
+        words.iter().for_each(|word| assert!(found.contains(word), "{word}: {found}"));
+    };
+    let more_than_it_has = "part motor: DcMotor { rated_torque = 0.5; } Se battery = 24 V; battery -> motor.supply;";
+    said(
+        "use motors;",
+        &format!("{more_than_it_has} {shaft}"),
+        &["`friction` of part `plate: PlateFriction`", "negative"],
+    );
+    let faster_than_its_field = "part motor: InductionMotor { rated_speed = 1600 rpm; }";
+    said("use motors;", &format!("{faster_than_its_field} {shaft}"), &["`slip` of part `plate: PlateSlip`"]);
+    let rod = "part cylinder: HydraulicCylinder { bore = 50 mm; rod = 60 mm; } 1 end: translation; I load = 10; cylinder.end -> end -> load;
+        0 a: hydraulic; 0 b: hydraulic; Sf shut_a = 0; Sf shut_b = 0; shut_a -> a -> cylinder.cap; shut_b -> b -> cylinder.annulus;
+        observe { all of cylinder }";
+    said("use hydraulics;", rod, &["`area` of part `beside_rod: RingArea`"]);
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod page;
 mod planets;
 mod transmissions;
 
+use bg_loaded::{Counted, Interpreted, Wanted, load_wanted};
 use bg_model::dynamics::{Dynamics as _, Machine as _};
 
 use super::hand::run;
@@ -34,6 +35,20 @@ impl Ran {
 /// A graph with these statements, and `use`s before it, after `t_end`.
 fn after(t_end: f64, uses: &str, statements: &str) -> Ran {
     of_text(t_end, &format!("{uses} graph Tried {{ {statements} }}"))
+}
+
+/// Why there is no model of a graph with these statements: a fault, or a value that cannot be.
+fn refused(uses: &str, statements: &str) -> String {
+    let wanted = Wanted { scene: &|_| true, counted: Counted::Made, most: None };
+    match load_wanted(&format!("{uses} graph Tried {{ {statements} }}"), wanted) {
+        Err(faults) => faults[0].to_string(),
+        Ok(graphs) => {
+            let model = &graphs[0].models[0];
+            let values: Vec<f64> = model.description.parameters.iter().map(|parameter| parameter.default).collect();
+            let blueprint = model.blueprint.as_ref().expect("it was asked for");
+            Interpreted::<f64>::new(blueprint, &values, &[]).err().expect("values that cannot be").to_string()
+        }
+    }
 }
 
 /// The graph of a text after `t_end`.
