@@ -46,7 +46,8 @@ const SHOWN: [(&str, &[&str]); 13] = [
         &[
             "rod: Body",
             "mass mass;",
-            "States: `rod.linear.p` kg*m/s, `rod.angular.p` kg*m^2/s, `rod.position` m, `rod.orientation` 1, `rod.angle` rad.",
+            "States: `rod.linear.p` kg*m/s, `rod.angular.p` kg*m^2/s, `rod.position` m",
+            "`rod.orientation` 1, `rod.angle` rad.",
         ],
     ),
     ("end in pin", &["end: Point", "point end = [-length / 2, 0, 0]"]),
