@@ -46,7 +46,7 @@ fn refused(uses: &str, statements: &str) -> String {
             let model = &graphs[0].models[0];
             let values: Vec<f64> = model.description.parameters.iter().map(|parameter| parameter.default).collect();
             let blueprint = model.blueprint.as_ref().expect("it was asked for");
-            Interpreted::<f64>::new(blueprint, &values, &[]).err().expect("values that cannot be").to_string()
+            Interpreted::<f64>::new(blueprint, &values, &[]).map(drop).expect_err("values that cannot be").to_string()
         }
     }
 }
