@@ -43,13 +43,13 @@ graph SliderCrank {{
     body crank {{ mass {CRANK_MASS}; inertia [1e-6, {CRANK_MASS * CRANK**2 / 12}, {CRANK_MASS * CRANK**2 / 12}];
                  point inner = [-{CRANK / 2}, 0, 0]; point outer = [{CRANK / 2}, 0, 0];
                  start inner at [0, 0, 0]; start turned rotation_z(start_angle);
-                 start velocity guess([0, 0, 0]); start spin [0, 0, {SPEED}]; }}
+                 start velocity [guess(0), guess(0), 0]; start spin [0, 0, {SPEED}]; }}
     body rod {{ mass {ROD_MASS}; inertia [1e-6, {ROD_MASS * ROD**2 / 12}, {ROD_MASS * ROD**2 / 12}];
                point inner = [-{ROD / 2}, 0, 0]; point outer = [{ROD / 2}, 0, 0];
                start inner at [{CRANK} * cos(start_angle), {CRANK} * sin(start_angle), 0]; start turned rotation_z(phi);
-               start velocity guess([0, 0, 0]); start spin guess([0, 0, 0]); }}
+               start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }}
     body block {{ mass {SLIDER}; inertia [1e-3, 1e-3, 1e-3];
-                 start at [{CRANK} * cos(start_angle) + {ROD} * cos(phi), 0, 0]; start velocity guess([0, 0, 0]); }}
+                 start at [{CRANK} * cos(start_angle) + {ROD} * cos(phi), 0, 0]; start velocity [guess(0), guess(0), 0]; }}
     joint bearing: revolute z (ground.shaft -> crank.inner) {{ rigid; }}
     joint knee: revolute z (crank.outer -> rod.inner) {{ rigid; }}
     joint wrist: revolute z (rod.outer -> block) {{ rigid; }}
