@@ -111,7 +111,7 @@ pub enum InputSettingError {
         /// The column.
         column: String,
         /// Why.
-        fault: QuantityError,
+        fault: Box<QuantityError>,
     },
     /// The rows are no table.
     #[error("--input {setting}: {fault}")]
@@ -240,7 +240,7 @@ fn table(
             setting: setting.clone(),
             path: path.clone(),
             column: name.to_owned(),
-            fault,
+            fault: Box::new(fault),
         })
     };
     let (time, value) = (conversion(0, "s")?, conversion(position, declared)?);
