@@ -252,8 +252,7 @@ fn each_fault_is_at_its_token() {
         ("for i in 0..20000 { let a[i] = 1; }", "1:23 BG0808 more than 10000 repetitions | make the range smaller"),
         (
             "part a: Leg { stiffness = -2; damping = 1e5 } Sf r = 1; r -> a.foot; a.hub -> a.foot;",
-            "1:38 BG0810 the parameter `stiffness` of part `a: Leg` must be above 0 | change the value, or the range in \
-             the part",
+            "1:38 BG0810 the parameter `stiffness` of part `a: Leg` must be above 0 | change the value",
         ),
         (
             "part b: Bar; start b.bat at [0, 0, 0];",
