@@ -1,7 +1,7 @@
 //! The library of parts: files that every text and every call of the macro has, `use gears;`.
 //!
-//! In: the name of one. Out: its text. They stand in the folder `parts` of this package, so that whatever compiles the language has
-//! them, and are written in the language alone. Each has parts only.
+//! In: the name of one. Out: its text. They stand in the folder `parts` of this package, so that whatever compiles the
+//! language has them, and are written in the language alone. Each has parts only.
 
 use std::path::PathBuf;
 

@@ -5,9 +5,9 @@
 //! are between, the operating point, the modes.
 //! Method: exact derivatives by numbers with slopes, in the independent coordinates of `manifold`.
 //!
-//! At a state that is no equilibrium the same matrices describe the motion relative to that of the model: rotations are those
-//! from where the model itself turns. For a rotor that spins about its axis of symmetry they stay the same, and their modes are
-//! those of a Campbell diagram; else they are true for a short time only.
+//! At a state that is no equilibrium the same matrices describe the motion relative to that of the model: rotations are
+//! those from where the model itself turns. For a rotor that spins about its axis of symmetry they stay the same, and
+//! their modes are those of a Campbell diagram; else they are true for a short time only.
 
 use bg_model::description::Description;
 use bg_model::mechanism::Differentiable;

@@ -51,7 +51,8 @@ fn it_runs_up_as_its_two_equations() {
 
 #[test]
 fn an_induction_motor_runs_up_by_kloss() {
-    let part = "part motor: InductionMotor { synchronous_speed = 1500 rpm; rated_speed = 1425 rpm; rated_power = 1.5 kW; breakdown = 2.6; inertia = 0.01; }
+    let part = "part motor: InductionMotor { synchronous_speed = 1500 rpm; rated_speed = 1425 rpm;
+    rated_power = 1.5 kW; breakdown = 2.6; inertia = 0.01; }
         1 shaft: rotation; motor.shaft -> shaft; I wheel = 0.05; shaft -> wheel; observe { all of motor }";
     let field = 50.0 * PI;
     let rated = 1500.0 / (1425.0 * PI / 30.0);
@@ -86,8 +87,10 @@ fn plates_that_contradict_themselves_are_refused() {
     );
     let faster_than_its_field = "part motor: InductionMotor { rated_speed = 1600 rpm; }";
     said("use motors;", &format!("{faster_than_its_field} {shaft}"), &["`slip` of part `plate: PlateSlip`"]);
-    let rod = "part cylinder: HydraulicCylinder { bore = 50 mm; rod = 60 mm; } 1 end: translation; I load = 10; cylinder.end -> end -> load;
-        0 a: hydraulic; 0 b: hydraulic; Sf shut_a = 0; Sf shut_b = 0; shut_a -> a -> cylinder.cap; shut_b -> b -> cylinder.annulus;
+    let rod = "part cylinder: HydraulicCylinder { bore = 50 mm; rod = 60 mm; } 1 end: translation; I load = 10;
+    cylinder.end -> end -> load;
+        0 a: hydraulic; 0 b: hydraulic; Sf shut_a = 0; Sf shut_b = 0; shut_a -> a -> cylinder.cap;
+        shut_b -> b -> cylinder.annulus;
         observe { all of cylinder }";
     said("use hydraulics;", rod, &["`area` of part `beside_rod: RingArea`"]);
 }
@@ -98,8 +101,10 @@ fn a_clutch_slips_until_both_turn_alike_and_then_sticks() {
         after(
             t,
             "use drives;",
-            "part clutch: Clutch { closing = if t < 0.1 { 0 } else { 0.8 }; torque = 50; sticking = 1.2; } 1 a: rotation; 1 b: rotation;
-            I one = 0.2 start 20; I two = 0.3; a -> one; a -> clutch.first; clutch.second -> b -> two; Se load = -3; load -> b;
+            "part clutch: Clutch { closing = if t < 0.1 { 0 } else { 0.8 }; torque = 50; sticking = 1.2; }
+            1 a: rotation; 1 b: rotation;
+            I one = 0.2 start 20; I two = 0.3; a -> one; a -> clutch.first; clutch.second -> b -> two;
+            Se load = -3; load -> b;
             observe { a: rad/s = a.flow; b: rad/s = b.flow; all of clutch; heat: J = integral(clutch.heat) }",
         )
     };
@@ -125,8 +130,10 @@ fn a_brake_stops_and_holds() {
             t,
             "use drives;",
             &format!(
-                "part brake: Brake {{ closing = 0.5; torque = 40; sticking = 1.1; }} 1 a: rotation; I one = 0.2 start 10; a -> one; a -> brake.shaft;
-                Se load = {load}; load -> a; observe {{ a: rad/s = a.flow; all of brake; heat: J = integral(brake.heat) }}"
+                "part brake: Brake {{ closing = 0.5; torque = 40; sticking = 1.1; }} 1 a: rotation;
+                I one = 0.2 start 10; a -> one; a -> brake.shaft;
+                Se load = {load}; load -> a; observe {{ a: rad/s = a.flow; all of brake;
+                heat: J = integral(brake.heat) }}"
             ),
         )
     };
@@ -141,7 +148,8 @@ fn a_brake_stops_and_holds() {
 
 #[test]
 fn a_flywheel_runs_down_in_air_and_bearings() {
-    let part = "part wheel: Flywheel { diameter = 500 mm; thickness = 40 mm; start_speed = 3000 rpm; bearing = 1.5; air = 2e-4; }
+    let part = "part wheel: Flywheel { diameter = 500 mm; thickness = 40 mm; start_speed = 3000 rpm; bearing = 1.5;
+    air = 2e-4; }
         1 a: rotation; a -> wheel.shaft; observe { all of wheel; lost: J = integral(wheel.lost) }";
     let inertia = 7850.0 * PI * 0.25_f64.powi(2) * 0.04 * 0.25_f64.powi(2) / 2.0;
     let start = 100.0 * PI;
@@ -165,9 +173,11 @@ fn a_cylinder_swings_on_its_oil() {
     let ran = after(
         0.013,
         "use hydraulics;",
-        "part cylinder: HydraulicCylinder { bore = 63 mm; rod = 36 mm; cap_volume = 0.8 l; rod_volume = 0.4 l; mass = 4; }
+        "part cylinder: HydraulicCylinder { bore = 63 mm; rod = 36 mm; cap_volume = 0.8 l; rod_volume = 0.4 l;
+        mass = 4; }
         1 end: translation; I load = 396; Se push = -2000; cylinder.end -> end -> load; push -> end;
-        0 a: hydraulic; 0 b: hydraulic; Sf shut_a = 0; Sf shut_b = 0; shut_a -> a -> cylinder.cap; shut_b -> b -> cylinder.annulus;
+        0 a: hydraulic; 0 b: hydraulic; Sf shut_a = 0; Sf shut_b = 0; shut_a -> a -> cylinder.cap;
+        shut_b -> b -> cylinder.annulus;
         observe { all of cylinder }",
     );
     let (cap, ring) = (PI / 4.0 * 0.063_f64.powi(2), PI / 4.0 * (0.063_f64.powi(2) - 0.036_f64.powi(2)));
@@ -188,9 +198,13 @@ fn a_valve_drives_it_as_fast_as_its_edges_let() {
             4.0,
             "use hydraulics;",
             &format!(
-                "part cylinder: HydraulicCylinder {{ bore = 63 mm; rod = 36 mm; leakage = 0; }} part valve: FourWayValve {{ opening = {opening}; rated_flow = 40 l/min; rated_drop = 35 bar; laminar = 1e-3 bar; }}
-                1 end: translation; I load = 100; Se push = -5000; R guide = 4000; cylinder.end -> end -> load; push -> end; end -> guide;
-                0 p: hydraulic; 0 r: hydraulic; Se pump = 150 bar; Se tank = 2 bar; pump -> p -> valve.pump; valve.tank -> r; tank -> r;
+                "part cylinder: HydraulicCylinder {{ bore = 63 mm; rod = 36 mm; leakage = 0; }}
+                part valve: FourWayValve {{ opening = {opening}; rated_flow = 40 l/min; rated_drop = 35 bar;
+                laminar = 1e-3 bar; }}
+                1 end: translation; I load = 100; Se push = -5000; R guide = 4000; cylinder.end -> end -> load;
+                push -> end; end -> guide;
+                0 p: hydraulic; 0 r: hydraulic; Se pump = 150 bar; Se tank = 2 bar; pump -> p -> valve.pump;
+                valve.tank -> r; tank -> r;
                 valve.a -> cylinder.cap; valve.b -> cylinder.annulus; observe {{ all of cylinder; all of valve }}"
             ),
         )
@@ -223,9 +237,12 @@ fn what_seals_and_leaks_does_to_a_cylinder() {
             6.0,
             "use hydraulics;",
             &format!(
-                "part cylinder: HydraulicCylinder {{ friction = 300; leakage = {leakage}; }} 1 end: translation; I load = 10; Se push = {push};
-                cylinder.end -> end -> load; push -> end; 0 a: hydraulic; 0 b: hydraulic; Se pipe_a = 0; R hose = 1e9; 1 c: hydraulic;
-                a -> cylinder.cap; b -> cylinder.annulus; pipe_a -> c -> a; c -> hose; Sf shut = 0; shut -> b; observe {{ all of cylinder }}"
+                "part cylinder: HydraulicCylinder {{ friction = 300; leakage = {leakage}; }} 1 end: translation;
+                I load = 10; Se push = {push};
+                cylinder.end -> end -> load; push -> end; 0 a: hydraulic; 0 b: hydraulic; Se pipe_a = 0;
+                R hose = 1e9; 1 c: hydraulic;
+                a -> cylinder.cap; b -> cylinder.annulus; pipe_a -> c -> a; c -> hose; Sf shut = 0; shut -> b;
+                observe {{ all of cylinder }}"
             ),
         )
     };
@@ -243,10 +260,13 @@ fn a_speed_control_does_not_wind_up() {
     let (gain, reset, limit, tracking, inertia, wanted): (f64, f64, f64, f64, f64, f64) =
         (2.0, 0.5, 8.0, 0.1, 0.4, 30.0);
     let part = format!(
-        "part control: SpeedControl {{ wanted = {wanted}; measured = shaft.flow; gain = {gain}; reset = {reset}; limit = {limit}; tracking = {tracking}; }}
-        MSe motor = control.command; 1 shaft: rotation; I wheel = {inertia}; motor -> shaft -> wheel; observe {{ speed: rad/s = shaft.flow; all of control }}"
+        "part control: SpeedControl {{ wanted = {wanted}; measured = shaft.flow; gain = {gain}; reset = {reset};
+        limit = {limit}; tracking = {tracking}; }}
+        MSe motor = control.command; 1 shaft: rotation; I wheel = {inertia}; motor -> shaft -> wheel;
+        observe {{ speed: rad/s = shaft.flow; all of control }}"
     );
-    // At the limit the error falls evenly, and the integral i' = gain / reset * e + (limit - gain e - i) / tracking follows.
+    // At the limit the error falls evenly, and the integral i' = gain / reset * e + (limit - gain e - i) / tracking
+    // follows.
     let error = |t: f64| wanted - limit / inertia * t;
     let slope = gain / reset - gain / tracking;
     let fall = -slope * limit / inertia;
@@ -316,10 +336,14 @@ fn a_cascade_turns_a_motor_to_an_angle() {
             t,
             "use controllers; use motors;",
             "part motor: DcMotor { inductance = 2 mH; }
-            part position: PositionControl { wanted = 2 rev; measured = shaft.displacement; limit = 2000 rpm; gain = 12; }
-            part speed: SpeedControl { wanted = position.command; measured = shaft.flow; gain = 0.05; reset = 0.1; limit = 0.5; tracking = 0.05; }
-            part current: CurrentControl { wanted = speed.command / motor.constant; measured = motor.armature.flow; gain = 2; reset = 0.004; limit = 24; }
-            MSe drive = current.command; drive -> motor.supply; 1 shaft: rotation; motor.shaft -> shaft; I load = 1e-3; shaft -> load;
+            part position: PositionControl { wanted = 2 rev; measured = shaft.displacement; limit = 2000 rpm;
+            gain = 12; }
+            part speed: SpeedControl { wanted = position.command; measured = shaft.flow; gain = 0.05; reset = 0.1;
+            limit = 0.5; tracking = 0.05; }
+            part current: CurrentControl { wanted = speed.command / motor.constant; measured = motor.armature.flow;
+            gain = 2; reset = 0.004; limit = 24; }
+            MSe drive = current.command; drive -> motor.supply; 1 shaft: rotation; motor.shaft -> shaft;
+            I load = 1e-3; shaft -> load;
             observe { angle: rad = shaft.displacement; speed: rad/s = shaft.flow; current: A = motor.current }",
         )
     };

@@ -47,7 +47,8 @@ fn each_of_three_shafts_may_be_held() {
             "PlanetarySet",
             "",
             &format!(
-                "Sf motor = 12; motor -> {driven}; Sf housing = 0; housing -> {held}; I wheel = 0.01; Se load = {load}; load -> {loaded};
+                "Sf motor = 12; motor -> {driven}; Sf housing = 0; housing -> {held}; I wheel = 0.01;
+                Se load = {load}; load -> {loaded};
                 {loaded} -> wheel; observe {{ driving: N*m = motor.effort; holding: N*m = housing.effort }}"
             ),
         )
@@ -68,8 +69,8 @@ fn each_of_three_shafts_may_be_held() {
 
 #[test]
 fn losses_are_those_with_the_carrier_held() {
-    // H. W. Mueller, Epicyclic Drive Trains (1982): with a basic efficiency n the ring holds, the sun drives with (1 + 3 n) / 4, and is
-    // driven with 4 / (1 + 3 / n).
+    // H. W. Mueller, Epicyclic Drive Trains (1982): with a basic efficiency n the ring holds, the sun drives with
+    // (1 + 3 n) / 4, and is driven with 4 / (1 + 3 / n).
     let more = "efficiency = 0.9; efficiency_back = 0.8; creep = 1e-6;";
     let ran = |statements: &str| set(1.0, "LossyPlanetarySet", more, statements);
     let forward = ran(
@@ -99,7 +100,8 @@ fn a_gearbox_has_its_ratio_and_its_efficiency() {
     let ran = after(
         0.3,
         "use drives;",
-        "part gearbox: PlanetaryGearbox { ratio = 5; efficiency = 0.9; inertia = 2e-3; } 1 a: rotation; 1 b: rotation; Se motor = 1; I load = 0.5;
+        "part gearbox: PlanetaryGearbox { ratio = 5; efficiency = 0.9; inertia = 2e-3; } 1 a: rotation;
+        1 b: rotation; Se motor = 1; I load = 0.5;
         I rotor = 1e-3 start 0.1; motor -> a -> rotor; a -> gearbox.fast; gearbox.slow -> b -> load;
         observe { a: rad/s = a.flow; b: rad/s = b.flow; all of gearbox }",
     );
@@ -119,15 +121,18 @@ fn gears_on_bodies_turn_in_their_carrier() {
         1.0,
         "use gears;",
         "ground { point O = [0, 0, 0]; }
-            body carrier { mass 2; inertia [0.02, 0.02, 0.02]; point hole = [0.1, 0, 0]; start at [0, 0, 0]; start spin [0, 0, 1]; }
-            body planet { mass 0.5; inertia [1e-4, 1e-4, 2e-4]; start at [0.1, 0, 0]; start velocity [0, 0.1, 0]; start spin [0, 0, guess(0)]; }
+            body carrier { mass 2; inertia [0.02, 0.02, 0.02]; point hole = [0.1, 0, 0]; start at [0, 0, 0];
+            start spin [0, 0, 1]; }
+            body planet { mass 0.5; inertia [1e-4, 1e-4, 2e-4]; start at [0.1, 0, 0]; start velocity [0, 0.1, 0];
+            start spin [0, 0, guess(0)]; }
             body sun { mass 1; inertia [1e-3, 1e-3, 1e-3]; start at [0, 0, 0]; start spin [0, 0, 5]; }
             joint main: revolute z (ground.O -> carrier) { rigid; }
             joint sun_pin: revolute z (carrier -> sun) { rigid; }
             joint planet_pin: revolute z (carrier.hole -> planet) { rigid; }
             part pair: JointGearPair { ratio = 2; } sun_pin.spin -> pair.first; pair.second -> planet_pin.spin;
             drive motor on main torque = 0.1;
-            observe { sun: rad/s = sun.angular_velocity.z; carrier: rad/s = carrier.angular_velocity.z; planet: rad/s = planet.angular_velocity.z }
+            observe { sun: rad/s = sun.angular_velocity.z; carrier: rad/s = carrier.angular_velocity.z;
+            planet: rad/s = planet.angular_velocity.z }
             scenes only; scene Planar { expect planar; }",
     );
     // Against the carrier the planet turns half as fast as the sun, the other way.
@@ -151,21 +156,28 @@ fn teeth_between_bodies_load_their_pins() {
         1.0,
         "use gears;",
         "ground { point O = [0, 0, 0]; }
-        body carrier { mass 2; inertia [0.02, 0.02, 0.02]; point hole = [0.05, 0, 0]; start at [0, 0, 0]; start spin [0, 0, 1]; }
-        body planet { mass 0.5; inertia [1e-4, 1e-4, 2e-4]; start at [0.05, 0, 0]; start velocity [0, 0.05, 0]; start spin [0, 0, guess(0)]; }
+        body carrier { mass 2; inertia [0.02, 0.02, 0.02]; point hole = [0.05, 0, 0]; start at [0, 0, 0];
+        start spin [0, 0, 1]; }
+        body planet { mass 0.5; inertia [1e-4, 1e-4, 2e-4]; start at [0.05, 0, 0]; start velocity [0, 0.05, 0];
+        start spin [0, 0, guess(0)]; }
         body sun { mass 1; inertia [1e-3, 1e-3, 1e-3]; start at [0, 0, 0]; start spin [0, 0, guess(5)]; }
         body ring { mass 1; inertia [5e-3, 5e-3, 5e-3]; start at [0, 0, 0]; start spin [0, 0, 5]; }
         joint main: revolute z (ground.O -> carrier) { rigid; } joint sun_pin: revolute z (ground.O -> sun) { rigid; }
-        joint ring_pin: revolute z (ground.O -> ring) { rigid; } joint pin: revolute z (carrier.hole -> planet) { rigid; }
+        joint ring_pin: revolute z (ground.O -> ring) { rigid; }
+        joint pin: revolute z (carrier.hole -> planet) { rigid; }
         part inner: BodyGearPair { first_radius = 30 mm; second_radius = 20 mm;
             away_x = planet.position.x - sun.position.x; away_y = planet.position.y - sun.position.y; }
         part outer: BodyInternalGearPair { first_radius = 20 mm; second_radius = 70 mm;
             away_x = ring.position.x - planet.position.x; away_y = ring.position.y - planet.position.y; }
-        sun.translation -> inner.first; sun.rotation -> inner.first_turn; planet.translation -> inner.second; planet.rotation -> inner.second_turn;
-        planet.translation -> outer.first; planet.rotation -> outer.first_turn; ring.translation -> outer.second; ring.rotation -> outer.second_turn;
+        sun.translation -> inner.first; sun.rotation -> inner.first_turn; planet.translation -> inner.second;
+        planet.rotation -> inner.second_turn;
+        planet.translation -> outer.first; planet.rotation -> outer.first_turn; ring.translation -> outer.second;
+        ring.rotation -> outer.second_turn;
         drive motor on sun_pin torque = 0.1;
-        observe { sun: rad/s = sun.angular_velocity.z; carrier: rad/s = carrier.angular_velocity.z; ring: rad/s = ring.angular_velocity.z;
-            planet: rad/s = planet.angular_velocity.z; all of inner; all of outer; along: N = dot(carrier.x_axis, pin.force);
+        observe { sun: rad/s = sun.angular_velocity.z; carrier: rad/s = carrier.angular_velocity.z;
+        ring: rad/s = ring.angular_velocity.z;
+            planet: rad/s = planet.angular_velocity.z; all of inner; all of outer;
+            along: N = dot(carrier.x_axis, pin.force);
             across: N = dot(carrier.y_axis, pin.force); on_sun: N = norm(sun_pin.force) }
         scenes only; scene Planar { expect planar; }",
     );
@@ -223,10 +235,14 @@ fn a_pinion_on_a_body_drives_a_rack_on_another() {
             0.5,
             &format!("use {library};"),
             &format!(
-                "ground {{ point O = [0, 0, 0]; }} body wheel {{ mass 1; inertia [1e-3, 1e-3, 1e-3]; }} body bar {{ mass 2; inertia [1e-3, 1e-3, 1e-3]; }}
-                joint pin: revolute z (ground.O -> wheel) {{ rigid; }} joint guide: prismatic x (ground.O -> bar) {{ rigid; }}
-                part pair: {part} {{ {ratio}; }} pin.spin -> pair.{first}; pair.{second} -> guide.slide; drive motor on pin torque = 0.3;
-                observe {{ speed: m/s = bar.velocity.x; force: N = pair.force }} scenes only; scene Planar {{ expect planar; }}"
+                "ground {{ point O = [0, 0, 0]; }} body wheel {{ mass 1; inertia [1e-3, 1e-3, 1e-3]; }}
+                body bar {{ mass 2; inertia [1e-3, 1e-3, 1e-3]; }}
+                joint pin: revolute z (ground.O -> wheel) {{ rigid; }}
+                joint guide: prismatic x (ground.O -> bar) {{ rigid; }}
+                part pair: {part} {{ {ratio}; }} pin.spin -> pair.{first}; pair.{second} -> guide.slide;
+                drive motor on pin torque = 0.3;
+                observe {{ speed: m/s = bar.velocity.x; force: N = pair.force }} scenes only;
+                scene Planar {{ expect planar; }}"
             ),
         );
         let acceleration = 0.3 / (1e-3 + 2.0 * k * k);

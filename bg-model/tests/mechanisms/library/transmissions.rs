@@ -117,7 +117,8 @@ fn elastic_teeth_swing_at_their_frequency() {
             0.05,
             &format!("use {library};"),
             &format!(
-                "part pair: {} {{ {ratio}; {more} }} 1 a: rotation; 1 b: {domain}; I one = {FIRST} start 0.004; I two = {SECOND};
+                "part pair: {} {{ {ratio}; {more} }} 1 a: rotation; 1 b: {domain}; I one = {FIRST} start 0.004;
+                I two = {SECOND};
                 a -> one; a -> pair.{first}; pair.{second} -> b -> two; observe {{ a: rad/s = a.flow; all of pair }}",
                 pair.1
             ),
@@ -140,7 +141,8 @@ fn backlash_is_free_and_both_flanks_bounce() {
             t,
             "use gears;",
             &format!(
-                "part pair: {} {{ ratio = 4; {more} }} 1 a: rotation; 1 b: rotation; I one = {FIRST} start 0.004; I two = {SECOND};
+                "part pair: {} {{ ratio = 4; {more} }} 1 a: rotation; 1 b: rotation; I one = {FIRST} start 0.004;
+                I two = {SECOND};
                 a -> one; a -> pair.first; pair.second -> b -> two; observe {{ all of pair }}",
                 pair.1
             ),
@@ -207,7 +209,8 @@ fn at_rest_it_sticks_within_its_efficiencies() {
             "use gears;",
             &format!(
                 "part pair: {} {{ ratio = 4; {more} }} 1 a: rotation; 1 b: rotation; I one = {FIRST}; I two = {SECOND};
-                Se motor = {torque} * if t < 1 {{ t / (1 s) }} else {{ 1 }}; Se load = 8 * if t < 1 {{ t / (1 s) }} else {{ 1 }};
+                Se motor = {torque} * if t < 1 {{ t / (1 s) }} else {{ 1 }};
+                Se load = 8 * if t < 1 {{ t / (1 s) }} else {{ 1 }};
                 motor -> a -> one; a -> pair.first; pair.second -> b -> two; load -> b;
                 observe {{ a: rad/s = a.flow; all of pair }}",
                 pair.1
@@ -230,7 +233,8 @@ fn a_worm_has_the_efficiency_of_its_lead_angle() {
             "use screws;",
             &format!(
                 "part worm: {part} {{ ratio = 30; lead_angle = {angle} deg; friction = {friction}; {more} }}
-                1 a: rotation; 1 b: rotation; I one = 1e-3 start 0.1; I two = 2; a -> one; a -> worm.worm; worm.wheel -> b {statements};
+                1 a: rotation; 1 b: rotation; I one = 1e-3 start 0.1; I two = 2; a -> one; a -> worm.worm;
+                worm.wheel -> b {statements};
                 observe {{ a: rad/s = a.flow; all of worm }}"
             ),
         )
@@ -251,7 +255,8 @@ fn a_worm_locks_itself_and_the_wheel_swings_on_its_teeth() {
     let ran = after(
         0.13,
         "use screws;",
-        "part worm: ElasticWorm { ratio = 30; lead_angle = 4 deg; friction = 0.08; stiffness = 50 N*m/rad; damping = 0; }
+        "part worm: ElasticWorm { ratio = 30; lead_angle = 4 deg; friction = 0.08; stiffness = 50 N*m/rad;
+        damping = 0; }
         1 a: rotation; 1 b: rotation; I one = 1e-3; I two = 2; Se load = 60;
         a -> one; a -> worm.worm; worm.wheel -> b -> two; load -> b;
         observe { a: rad/s = a.flow; twist: rad = worm.twist }",
@@ -268,7 +273,8 @@ fn belt(t_end: f64, part: &str, more: &str) -> Ran {
         t_end,
         "use belts;",
         &format!(
-            "part belt: {part} {{ stiffness = 1e5 N/m; {more} }} 1 a: rotation; 1 b: rotation; I one = 1e-3 start 0.1; I two = 0.02;
+            "part belt: {part} {{ stiffness = 1e5 N/m; {more} }} 1 a: rotation; 1 b: rotation;
+            I one = 1e-3 start 0.1; I two = 0.02;
             a -> one; a -> belt.first; belt.second -> b -> two; observe {{ all of belt }}"
         ),
     )
@@ -303,7 +309,8 @@ fn a_belt_slips_at_its_grip() {
     let ran = after(
         3.0,
         "use belts;",
-        "part belt: BeltDrive { friction = 0.3; wrap = 160 deg; tension = 250 N; sliding = 20; } Sf motor = 10; Sf held = 0;
+        "part belt: BeltDrive { friction = 0.3; wrap = 160 deg; tension = 250 N; sliding = 20; } Sf motor = 10;
+        Sf held = 0;
         1 a: rotation; 1 b: rotation; motor -> a -> belt.first; belt.second -> b; held -> b; observe { all of belt }",
     );
     ran.is("belt.slip", 0.4, 1e-9);
@@ -325,8 +332,10 @@ fn a_winch_swings_its_load_and_does_not_push() {
             t,
             "use belts;",
             &format!(
-                "part winch: Winch {{ radius = 150 mm; falls = 2; stiffness = 1e5 N/m; damping = 0; }} 1 shaft: rotation; 1 hook: translation;
-                Sf motor = {drum}; I mass = 100; Se weight = -981 N; motor -> shaft -> winch.drum; winch.load -> hook -> mass; weight -> hook;
+                "part winch: Winch {{ radius = 150 mm; falls = 2; stiffness = 1e5 N/m; damping = 0; }}
+                1 shaft: rotation; 1 hook: translation;
+                Sf motor = {drum}; I mass = 100; Se weight = -981 N; motor -> shaft -> winch.drum;
+                winch.load -> hook -> mass; weight -> hook;
                 observe {{ speed: m/s = hook.flow; pull: N = winch.rope.pull; stretch: mm = winch.rope.stretch }}"
             ),
         )

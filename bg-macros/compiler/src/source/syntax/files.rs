@@ -1,8 +1,9 @@
 //! Files that use parts of other files, `use "parts/shaft.bond";`, and of the library, `use gears;`.
 //!
-//! In: the text of a file, what opens others; or a call of the macro, which uses the library only. Out: the tokens of one text: the
-//! parts of all files that it uses, each file once, then what stands in the file itself. Of the library there are only the parts
-//! that are used. No longer occurs: `use`, but for those of files in a call, which the parser has a fault for.
+//! In: the text of a file, what opens others; or a call of the macro, which uses the library only. Out: the tokens of
+//! one text: the parts of all files that it uses, each file once, then what stands in the file itself. Of the library
+//! there are only the parts that are used. No longer occurs: `use`, but for those of files in a call, which the parser
+//! has a fault for.
 //!
 //! Graphs of a used file are left alone, and its parts are no items of Rust: these are what the file itself has.
 
