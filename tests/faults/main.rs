@@ -43,7 +43,7 @@ const SYNTAX: [(&str, &str); 23] = [
 /// More parentheses than the parser follows.
 const DEEP: &str = "deep";
 
-const MECHANISM: [(&str, &str); 14] = [
+const MECHANISM: [(&str, &str); 18] = [
     (
         "BG0201",
         "body rod { sphere radius 1; density 1; }\njoint pin: fixed (ground -> ▸rodd) { stiffness 1; tilt stiffness 1; }",
@@ -81,9 +81,27 @@ const MECHANISM: [(&str, &str); 14] = [
          friction seat on ▸pin { coulomb 1; }",
     ),
     ("BG0214", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness ▸1e4; restitution 0.5; }"),
+    (
+        "BG0231",
+        "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground plane y -> ball circle 0.1) { stiffness 1e5; }",
+    ),
+    (
+        "BG0232",
+        "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground line z -> ball circle 0.1) { stiffness 1e5; }",
+    ),
+    (
+        "BG0233",
+        "table lift: rad -> m = [[0, 1], [3, 2], [6, 1]], spline, periodic;\nbody ball { sphere radius 0.1; density 1; }\n\
+         contact c (ground profile ▸lit -> ball circle 0.1) { stiffness 1e5; }",
+    ),
+    (
+        "BG0234",
+        "table lift: rad -> m = [[0, 1], [3, 2], [6, 1]], periodic;\nbody ball { sphere radius 0.1; density 1; }\n\
+         contact c (ground profile ▸lift -> ball circle 0.1) { stiffness 1e5; }",
+    ),
 ];
 
-const GRAPH: [(&str, &str); 40] = [
+const GRAPH: [(&str, &str); 41] = [
     ("BG0301", "param mass: ▸kgs = 1;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0302", "param m: kg = 1;\nSe f = 1; 1 j: translation; I ▸m = 2; f -> j -> m;"),
     ("BG0303", "param mass: kg = 1;\nSe f = 1; 1 j: translation; I m = ▸mas; f -> j -> m;"),
@@ -125,6 +143,11 @@ const GRAPH: [(&str, &str); 40] = [
         "table c: m -> N = [[0, 1], [▸0, 2], [1, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
     ),
     ("BG0340", "table c: m -> N = [[0, 1], [1, 2]]; 1 j: translation; I m = 2; C k(q) = ▸c * q; j -> m; j -> k;"),
+    (
+        "BG0341",
+        "table ▸c: m, V -> N = [[0, 1], [0, 1, 2], [1, 2, 3]], periodic;\n\
+         1 j: translation; I m = 2; MSe f = c(k.q, 1); C k(q) = 2 * q; f -> j -> m; j -> k;",
+    ),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
 ];
@@ -193,11 +216,63 @@ const VALUES: [(&str, &str); 4] = [
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 45] = [
+const MORE: [(&str, &str); 59] = [
     ("BG0339", "table ▸c: m -> N = [[0, 1]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;"),
     (
         "BG0339",
         "table c: m -> N = [[0, 1], ▸[1, 2, 3], [2, 3]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
+    ),
+    (
+        "BG0339",
+        "table ▸c: rad -> N*m = [[0, 1], [1, 2], [2, 3]], periodic; 1 j: rotation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
+    ),
+    (
+        "BG0234",
+        "table lift: rad -> m = [[0, 1], [3, 2], [6, 1]], spline;\nbody ball { sphere radius 0.1; density 1; }\n\
+         contact c (ground profile ▸lift -> ball circle 0.1) { stiffness 1e5; }",
+    ),
+    (
+        "BG0111",
+        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground ▸wall x -> ball circle 0.1) { stiffness 1e5; }",
+    ),
+    ("BG0102", "body ball { sphere radius 0.1; density 1; }\ncontact c (ground -> ball▸) { stiffness 1e5; }"),
+    (
+        "BG0203",
+        "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground line x -> ball circle 0.1) { damping 3; }",
+    ),
+    (
+        "BG0204",
+        "body ball { sphere radius 0.1; density 1; }\n\
+         contact c (ground line x -> ball circle 0.1) { stiffness 1e5; damping 3; restitution ▸0.5; }",
+    ),
+    (
+        "BG0704",
+        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground line x -> ball circle 0.1) { stiffness 1e5; restitution ▸1; }",
+    ),
+    (
+        "BG0213",
+        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; }\n\
+         friction rub on ▸c { coulomb 0.2; }",
+    ),
+    (
+        "BG0204",
+        "body rod { sphere radius 1; density 1; }\n\
+         joint pin: spherical (ground -> rod) { stiffness 1; clearance ▸1e-4; }",
+    ),
+    (
+        "BG0204",
+        "body rod { sphere radius 1; density 1; }\njoint pin: revolute z (ground -> rod) { rigid; clearance ▸1e-4; }",
+    ),
+    ("BG0102", "1 j: translation; I m = 2; j -> m; memory last: m/s = j.flow▸;"),
+    ("BG0304", "table c: m -> N = [[0, 1], [1, 2]]; 1 j: translation; I m = 2; C k(q) = ▸c.slope(q); j -> m; j -> k;"),
+    (
+        "BG0339",
+        "table c: m, V -> N = [[0, 1], [0, 1, 2], ▸[1, 2]];\n\
+         1 j: translation; I m = 2; MSe f = c(k.q, 1); C k(q) = 2 * q; f -> j -> m; j -> k;",
+    ),
+    (
+        "BG0306",
+        "table c: m, V -> N = [[0, 1], [0, 1, 2], [1, 2, 3]];\n1 j: translation; I m = 2; MSe f = ▸c(k.q); C k(q) = 2 * q; f -> j -> m; j -> k;",
     ),
     ("BG0102", "1 slide ▸translation; I m = 2; slide -> m;"),
     ("BG0102", "let stiffness ▸N = 2;\n1 slide: translation; I m = 2; slide -> m;"),

@@ -30,6 +30,7 @@ pub struct Blueprint {
     pub(crate) settled: Vec<usize>,
     pub(crate) second: Range<usize>,
     pub(crate) first_branches: Vec<bool>,
+    pub(crate) memories: Vec<usize>,
     pub(crate) loops: Vec<Loop>,
     pub(crate) elimination: Deferred<Elimination>,
 }
@@ -138,6 +139,7 @@ impl Blueprint {
             settled: tables.settled,
             second: tables.second,
             first_branches: tables.first_branches,
+            memories: tables.memories,
             loops: tables.loops,
         }
     }

@@ -75,6 +75,10 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
         self.evaluate(&self.programs().guards, &self.rows.guards, Moment::at(t, x, negative), guards);
     }
 
+    fn memories(&self) -> Vec<usize> {
+        self.blueprint.memories.clone()
+    }
+
     fn first_branches(&self) -> Vec<bool> {
         self.blueprint.first_branches.clone()
     }

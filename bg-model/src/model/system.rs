@@ -58,6 +58,12 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         [false; G]
     }
 
+    /// The states that [`System::project`] sets to what they follow, by which it moves them far: what memories keep.
+    /// None by default.
+    fn memories(&self) -> &'static [usize] {
+        &[]
+    }
+
     /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal
     /// orientations, closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before
     /// the rate at the new state is evaluated, and for each sample inside a step.

@@ -15,6 +15,7 @@ mod orifice;
 #[path = "../problems/mod.rs"]
 mod problems;
 mod redundant;
+mod shapes;
 mod space;
 mod spatial_slider_crank;
 mod start;

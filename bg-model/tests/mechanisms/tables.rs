@@ -20,7 +20,8 @@ fn spring(declared: &str, law: &str) -> String {
 
 /// Place and energy after `t_end`.
 fn after(text: &str, method: AnyMethod, t_end: f64) -> [f64; 2] {
-    let model = model(&graphs(text), "Spring", &[]);
+    let graphs = graphs(text);
+    let model = model(&graphs, &graphs[0].name, &[]);
     let start = model.start().expect("a start");
     let settings = Settings { tolerances: Tolerances::new(1e-12, 1e-14), ..Settings::default() };
     let mut method = method;
@@ -130,4 +131,132 @@ fn each_use_of_a_part_has_its_table() {
     let frequency = (2.0 * 3000.0_f64 / 6.0).sqrt();
     let expected = 1e3 * 0.1 / 6.0 / frequency * (frequency * 0.5).sin();
     assert!((place - expected).abs() < 1e-8, "{place} {expected}");
+}
+
+/// A rotor that a torque of its angle turns, with what is known of it.
+fn rotor(table: &str, start: &str) -> String {
+    format!(
+        "graph Rotor {{
+            {table}
+            1 shaft: rotation; I wheel = 0.2 start 0.2 * {start}; C magnet(q) = torque(q) start 0.3; shaft -> wheel; shaft -> magnet;
+            observe {{ angle: rad = magnet.q; total: J = stored_energy; slope: N*m/rad = torque.derivative(magnet.q) }}
+        }}"
+    )
+}
+
+#[test]
+fn a_periodic_table_goes_on_in_every_turn_both_ways() {
+    // A cosine of three poles per turn, with an offset: the energy has a part that grows from turn to turn.
+    let of = |angle: f64| 0.4 * (3.0 * angle).cos() + 0.05;
+    let points = |count: u32| -> String {
+        let angle = |k: u32| 30.0 + 360.0 * f64::from(k) / f64::from(count);
+        let point = |k: u32| format!("[{}, {:?}]", angle(k), of(angle(k % count).to_radians()));
+        (0..=count).map(point).collect::<Vec<_>>().join(", ")
+    };
+    let formula = |start: &str| {
+        rotor("", start)
+            .replace("torque(q)", "0.4 * cos(3 * q) + 0.05")
+            .replace("torque.derivative(magnet.q)", "-1.2 * sin(3 * magnet.q)")
+    };
+    for start in ["9", "-9"] {
+        let by_formula = after(&formula(start), Dop853::new().into(), 3.0);
+        assert!(by_formula[0].abs() > 3.0 * std::f64::consts::TAU, "{by_formula:?}");
+        let error = |count: u32| {
+            let table = format!("table torque: deg -> N*m = [{}], spline, periodic;", points(count));
+            let start_energy = after(&rotor(&table, start), Dop853::new().into(), 1e-12)[1];
+            let found = after(&rotor(&table, start), Dop853::new().into(), 3.0);
+            assert!((found[1] - start_energy).abs() < 1e-11 * start_energy, "{found:?} {start_energy}");
+            for method in [AnyMethod::from(Taylor::new()), Radau5::new().into()] {
+                let other = after(&rotor(&table, start), method, 3.0);
+                assert!((other[0] - found[0]).abs() < 1e-8, "{other:?} {found:?}");
+            }
+            (found[0] - by_formula[0]).abs()
+        };
+        let order = (error(36) / error(72)).log2();
+        assert!(order > 3.5, "order {order}");
+    }
+}
+
+#[test]
+fn straight_lines_of_a_periodic_table_are_a_saw_in_all_turns() {
+    let table = "table torque: deg -> N*m = [[-40, 0.3], [80, -0.3], [320, 0.3]], periodic;";
+    // The integral of the torque from zero, turn by turn: 0 over each.
+    let energy = |angle: f64| {
+        let [low, high, span] = [-40.0_f64, 80.0, 360.0].map(f64::to_radians);
+        let within = |x: f64| {
+            let fall = |x: f64| 0.3 * (x - low) - 0.3 * (x - low).powi(2) / (high - low);
+            let rise = |x: f64| -0.3 * (x - high) + 0.3 * (x - high).powi(2) / (low + span - high);
+            if x < high { fall(x) } else { fall(high) + rise(x) }
+        };
+        let turned = |x: f64| within(low + (x - low).rem_euclid(span));
+        turned(angle) - turned(0.0)
+    };
+    for start in [4.0_f64, -4.0] {
+        let text = rotor(table, &start.to_string()).replace("stored_energy", "wheel.energy");
+        for t_end in [1.3, 5.0, 11.0] {
+            let [angle, kinetic] = after(&text, Dop853::new().into(), t_end);
+            let expected = 0.1 * start * start - energy(angle) + energy(0.3);
+            assert!((kinetic - expected).abs() < 1e-11, "{angle} rad: {kinetic} J, not {expected} J");
+        }
+    }
+}
+
+#[test]
+fn derivatives_of_tables_are_those_of_their_polynomials() {
+    // A spline through points of a cubic is that cubic.
+    let text = "graph Cubic {
+        table cubic: mm -> N = [[-2, -8], [-1, -1], [0, 0], [1, 1], [3, 27]], spline;
+        1 slide: translation; I block = 1 start 1e-3; slide -> block; C spring(q) = cubic.derivative(q) * 1 mm start 0.5 mm; slide -> spring;
+        observe { place: mm = spring.q; first: N/mm = cubic.derivative(spring.q); second: N/mm/mm = cubic.second_derivative(spring.q);
+            energy: N*mm = spring.energy }
+    }";
+    let cubic = model(&graphs(text), "Cubic", &[]);
+    let start = cubic.start().expect("a start");
+    for t_end in [0.01, 0.05, 0.09] {
+        let finish = super::hand::run(&*cubic, &start, t_end);
+        let found = outputs(&*cubic, finish.t, finish.x.as_slice(), &finish.negative);
+        let [place, first, second, energy] = found[..] else { panic!("four outputs") };
+        assert!((first - 3.0 * place * place).abs() < 1e-12 && (second - 6.0 * place).abs() < 1e-12, "{found:?}");
+        assert!((energy - place.powi(3)).abs() < 1e-12, "{found:?}");
+    }
+}
+
+#[test]
+fn a_part_takes_the_derivative_of_its_own_table() {
+    let text = "part Coil { table lift: rad -> mm = [[0, 0], [1, 2], [2, 3], [3, 0]], spline, periodic; 1 shaft: rotation;
+            MSe push = 1 N * lift.derivative(turn) * 1; state turn: rad = shaft.flow start 0.5; push -> shaft; port end = shaft; }
+        graph Use { part left: Coil {} 1 shaft: rotation; I wheel = 0.1; left.end -> shaft; shaft -> wheel;
+            observe { lifted: J = wheel.energy; angle: rad = left.turn } }";
+    let used = model(&graphs(text), "Use", &[]);
+    let finish = super::hand::run(&*used, &used.start().expect("a start"), 0.7);
+    let found = outputs(&*used, finish.t, finish.x.as_slice(), &finish.negative);
+    assert!(found[0] > 1e-7 && found[1] > 0.5, "{found:?}");
+}
+
+#[test]
+fn a_map_of_speed_and_voltage_drives_as_its_formula() {
+    // A torque that is linear in each: straight lines are exact, and so is a spline.
+    let torque = |rpm: f64, volt: f64| 0.02 * volt - 4e-4 * rpm + 1e-5 * rpm * volt;
+    let row = |rpm: f64| format!("[{rpm:?}, {:?}, {:?}, {:?}]", torque(rpm, 0.0), torque(rpm, 10.0), torque(rpm, 24.0));
+    let rows: Vec<String> = [0.0, 200.0, 700.0, 900.0, 2000.0].map(row).into();
+    let text = |declared: &str, law: &str| {
+        format!(
+            "graph Motor {{
+                {declared}
+                let volt: V = 12 V + 6 V * sin(3 * t / (1 s));
+                1 shaft: rotation; I rotor = 2e-3; MSe motor = {law}; R fan = 1e-3; motor -> shaft -> rotor; shaft -> fan;
+                observe {{ speed: rpm = shaft.flow; total: J = stored_energy }}
+            }}"
+        )
+    };
+    let by_formula =
+        "0.02 N*m/V * volt - (4e-4 N*m) / (1 rpm) * shaft.flow + (1e-5 N*m/V) / (1 rpm) * shaft.flow * volt";
+    let expected = after(&text("", by_formula), Dop853::new().into(), 2.0);
+    for words in ["", ", spline", ", continued"] {
+        let table = format!("table map: rpm, V -> N*m = [[0, 10, 24], {}]{words};", rows.join(", "));
+        for method in [AnyMethod::from(Dop853::new()), Taylor::new().into(), Radau5::new().into()] {
+            let found = after(&text(&table, "map(shaft.flow, volt)"), method, 2.0);
+            assert!((found[0] - expected[0]).abs() < 1e-7, "{words}: {found:?} {expected:?}");
+        }
+    }
 }

@@ -11,8 +11,8 @@ use bg_model::sensitivity::{
 use bg_model::simulation::Samples;
 
 use super::{
-    Ball, BallParameters, Belt, BeltParameters, Block, BlockParameters, Crank, CrankParameters, Lifted,
-    LiftedParameters, Pendulum, PendulumParameters,
+    Ball, BallParameters, Belt, BeltParameters, Block, BlockParameters, Crank, CrankParameters, Dropped,
+    DroppedParameters, Lifted, LiftedParameters, Pendulum, PendulumParameters,
 };
 
 /// All parameters and the start of each state.
@@ -87,6 +87,12 @@ fn impacts() {
     for (error, events) in [ball, lifted] {
         assert!(error < 1e-11 && events >= 3, "{error:e} {events}");
     }
+}
+
+#[test]
+fn a_contact_by_restitution_keeps_a_speed() {
+    let (error, events) = deviation(&Dropped::new(DroppedParameters::default()).unwrap(), 0.25);
+    assert!(error < 1e-11 && events >= 2, "{error:e} {events}");
 }
 
 /// The squares of what measured columns leave, at instants inside steps, of which two columns share some.

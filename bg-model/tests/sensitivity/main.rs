@@ -1,4 +1,5 @@
-//! Derivatives by parameters and start values against five-point differences in double-double arithmetic, and closed forms.
+//! Derivatives by parameters and start values against five-point differences in double-double arithmetic, and closed
+//! forms.
 
 mod adjoint;
 
@@ -62,6 +63,17 @@ bond_graph! {
         stop floor on apart { at most 0; start -height; restitution give; }
         observe { y: m = floor.place; v: m/s = fall.flow; lost: J = integral(dissipated_power) }
     }
+    /// A ball that falls on a floor which gives way, and keeps the speed at which it met it.
+    graph Dropped {
+        param mass: kg = 0.5, above 0; param height: m = 0.05; param gravity: m/s^2 = 9.81; param stiffness: N/m = 1e4; param give: 1 = 0.7;
+        gravity [0, -gravity, 0];
+        ground { point O = [0, 0, 0]; }
+        body ball { mass mass; inertia [1e-3, 1e-3, 1e-3]; start at [0, 0.1 + height, 0]; }
+        contact floor (ground.O line x -> ball circle 0.1) { stiffness stiffness; restitution give; }
+        observe { y: m = ball.position.y; v: m/s = ball.velocity.y; lost: J = integral(dissipated_power) }
+        scenes only;
+        scene Dropped { expect planar; }
+    }
     /// A mass on a spring.
     graph Oscillator {
         param mass: kg = 2, above 0; param stiffness: N/m = 50, above 0; param start: m = 0.1;
@@ -90,8 +102,8 @@ fn request(t: f64, method: Integrator) -> Request {
     Request { method, t_end: t, rtol: 1e-12, atol: Some(1e-13), samples: Samples::At(vec![t]), ..Request::default() }
 }
 
-/// The largest difference of an exact derivative from differences, in parts of the largest derivative of its output at `t` (s)
-/// per part of its parameter; and how many events there were.
+/// The largest difference of an exact derivative from differences, in parts of the largest derivative of its output at
+/// `t` (s) per part of its parameter; and how many events there were.
 fn deviation<Me: Mechanism>(model: &Me, t: f64, method: Integrator) -> (f64, u64) {
     let directions = Direction::parameters::<Me>();
     let found = sensitivities(model, &request(t, method), &directions).expect("derivatives");
@@ -128,6 +140,12 @@ fn a_closed_loop_from_its_assembled_start() {
 fn a_law_with_two_branches() {
     let (error, events) = deviation(&Block::new(BlockParameters::default()).unwrap(), 2.0, Integrator::Auto);
     assert!(error < 1e-9 && events > 5, "{error:e} {events}");
+}
+
+#[test]
+fn a_contact_by_restitution_keeps_a_speed_of_an_instant_that_moves() {
+    let (error, events) = deviation(&Dropped::new(DroppedParameters::default()).unwrap(), 0.25, Integrator::Dop853);
+    assert!(error < 1e-8 && events >= 2, "{error:e} {events}");
 }
 
 #[test]
@@ -202,8 +220,8 @@ fn impacts_on_what_moves_against_the_closed_form() {
     }
 }
 
-/// The steps of a Taylor series go over more than a radian, for which those of the slopes are divided: x = x_0 cos(w t) with
-/// w = sqrt(k / m).
+/// The steps of a Taylor series go over more than a radian, for which those of the slopes are divided: x = x_0 cos(w t)
+/// with w = sqrt(k / m).
 #[test]
 fn slopes_along_long_steps_are_as_exact_as_the_run() {
     let model = Oscillator::new(OscillatorParameters::default()).unwrap();

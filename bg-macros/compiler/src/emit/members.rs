@@ -63,6 +63,7 @@ pub(super) fn of(item: &Item) -> Vec<Member> {
             ("distance", Scalar, "Distance of the two ends. Unit: m."),
         ],
         Item::Contact(_) => vec![FORCE, GAP, ("speed", Scalar, "Speed along the line. Unit: m/s.")],
+        Item::ShapeContact(_) => of_shapes(),
         Item::Drive(_) => vec![("power", Scalar, "Minus the power that it gives. Unit: W.")],
         Item::Friction(_) => vec![EFFORT, POWER],
         Item::Stop(_) => vec![EFFORT],
@@ -76,6 +77,17 @@ pub(super) fn of(item: &Item) -> Vec<Member> {
     }
 }
 
+fn of_shapes() -> Vec<Member> {
+    vec![
+        FORCE,
+        ("gap", Scalar, "Distance of the shapes, negative where they touch. Unit: m."),
+        ("pressed", Scalar, "The force that presses. Unit: N."),
+        ("speed", Scalar, "How fast the distance grows. Unit: m/s."),
+        ("place", Vector, "Where they touch, or would, inertial axes. Unit: m."),
+        ("normal", Vector, "From the first shape to the second, inertial axes."),
+    ]
+}
+
 fn of_joint(joint: &Joint) -> Vec<Member> {
     let mut members = vec![FORCE];
     if joint.kind != JointKind::Spherical {
@@ -86,6 +98,10 @@ fn of_joint(joint: &Joint) -> Vec<Member> {
         members.push(("angle", Scalar, "Angle of the free rotation, with its turns. Unit: rad."));
         members.push(("direction", Scalar, "The same in one turn, -pi to pi. Unit: rad."));
         members.push(("speed", Scalar, "Speed of the free rotation. Unit: rad/s."));
+    }
+    if joint.clearance.is_some() {
+        members.push(("pressed", Scalar, "The force between pin and hole. Unit: N."));
+        members.push(("eccentricity", Scalar, "How far the pin is from the middle of its hole. Unit: m."));
     }
     if joint.kind.slide().is_some() {
         members.push(("travel", Scalar, "Way of the free translation. Unit: m."));
@@ -120,6 +136,7 @@ mod tests {
         body e { mass 1; inertia [1, 1, 1]; }
         body f { mass 1; inertia [1, 1, 1]; }
         joint revolute: revolute z (ground.O -> a) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
+        joint loose: revolute z (a.end -> b) { stiffness 1; damping 1; clearance 1e-4; tilt stiffness 1; }
         joint prismatic: prismatic x (ground.O -> b) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
         joint ball: spherical (ground.O -> c) { stiffness 1; damping 1; }
         joint cylindrical: cylindrical x (ground.O -> d) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
@@ -127,6 +144,7 @@ mod tests {
         joint weld: fixed (ground.O -> f) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
         spring coil (ground.P -> a.end) { stiffness 1; damping 1; length 0.1; }
         contact edge (a.end -> b along x) { y: C = soft, R = 1; }
+        contact shapes (ground.P circle 0.1 -> b circle 0.2) { stiffness 1; damping 1; }
         drive motor on revolute torque = 1;
         friction rub on prismatic { coulomb 1; }
         stop end on prismatic { at most 1; stiffness 1; }

@@ -216,7 +216,7 @@ fn kind(item: &Item) -> Option<Kind> {
     Some(match item {
         Item::Parameter(_) => Kind::Parameter,
         Item::Input(_) => Kind::Input,
-        Item::Let(_) | Item::Table(_) | Item::State(_) | Item::Track(_) => Kind::Value,
+        Item::Let(_) | Item::Table(_) | Item::State(_) | Item::Memory(_) | Item::Track(_) => Kind::Value,
         Item::Port(Port::Alias(..)) => Kind::Port,
         Item::Port(Port::Junction(junction)) => {
             let item = Item::Junction(junction.clone());

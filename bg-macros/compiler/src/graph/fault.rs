@@ -50,6 +50,9 @@ pub enum GraphFault {
     TablePoint { name: String },
     TableOrder { name: String },
     TableSize { name: String, found: usize, most: usize },
+    TablePeriod { name: String },
+    TableRow { name: String, found: usize, expected: usize },
+    TableOfTwo { name: String, word: &'static str },
     TableWithoutArgument { name: String },
 }
 
@@ -97,7 +100,12 @@ impl Explain for GraphFault {
             F::Decay => "BG0335",
             F::NotAValue { .. } => "BG0337",
             F::UnitOrName { .. } => "BG0338",
-            F::TablePoint { .. } | F::TableOrder { .. } | F::TableSize { .. } => "BG0339",
+            F::TablePoint { .. }
+            | F::TableOrder { .. }
+            | F::TableSize { .. }
+            | F::TablePeriod { .. }
+            | F::TableRow { .. } => "BG0339",
+            F::TableOfTwo { .. } => "BG0341",
             F::TableWithoutArgument { .. } => "BG0340",
         }
     }
@@ -167,6 +175,13 @@ impl Explain for GraphFault {
             F::TableSize { name, found, most } => {
                 format!("the table `{name}` has {found} points; a table has at least 2 and at most {most}")
             }
+            F::TablePeriod { name } => {
+                format!("the periodic table `{name}` does not end as it begins: its last value is not its first one")
+            }
+            F::TableRow { name, found, expected } => {
+                format!("a row of the table `{name}` has {found} numbers; with its first argument it has {expected}")
+            }
+            F::TableOfTwo { name, word } => format!("the table `{name}` of two arguments cannot have a `{word}`"),
             F::TableWithoutArgument { name } => format!("`{name}` is a table, whose value needs an argument"),
             F::UnitOrName { unit, symbol } => {
                 format!("`{symbol}` in `{unit}` is a unit, and there is something of this name")
@@ -222,6 +237,17 @@ impl Explain for GraphFault {
                 "leave points out where the curve is nearly straight".to_owned()
             }
             F::TableSize { .. } => "write at least two points, `[[0, 1], [2, 3]]`".to_owned(),
+            F::TableRow { .. } => {
+                "write a row of the second arguments, then rows of a first one with its values: `[[y1, y2], [x1, v11, v12], ..]`"
+                    .to_owned()
+            }
+            F::TableOfTwo { word: "monotone", .. } => "write `spline`, or leave the word out for straight lines".to_owned(),
+            F::TableOfTwo { word: "periodic", .. } => "write `held` or `continued`".to_owned(),
+            F::TableOfTwo { .. } => "use its values at two places".to_owned(),
+            F::TablePeriod { .. } => {
+                "add the point at which the next period begins, with the first value again; three points at least"
+                    .to_owned()
+            }
             F::TableWithoutArgument { name } => format!("write `{name}(..)` with the argument in the parentheses"),
             F::UnitOrName { symbol, .. } => {
                 format!("write `({symbol})` if you mean that, or rename it if you mean the unit")

@@ -24,8 +24,8 @@ pub use crate::source::drawing::{self, Drawing};
 pub use causality::{CausalGraph, End};
 pub use fault::{GraphFault, OF_BONDS};
 pub use resolve::resolve;
-pub use table::{Cubic, Piece, Table};
-pub use term::{Builtin, Operation, Reference, Term, TermKind};
+pub use table::{Cubic, Patch, Period, Piece, Surface, Table};
+pub use term::{Builtin, Lookup, Operation, Reference, Term, TermKind};
 pub use typing::Shape;
 
 /// A resolved multibond graph. Indices of its tables are typed by their names: `NodeId`, `BondId`, `JointId`.
@@ -357,6 +357,8 @@ pub struct Integral {
     pub declared: Option<Dimension>,
     /// Its value at t = 0.
     pub start: Option<Term>,
+    /// The `let` that it becomes after each step, of a memory.
+    pub follows: Option<usize>,
 }
 
 impl Turn {

@@ -34,8 +34,8 @@ pub enum TermKind {
     Chain(Box<Term>, Vec<Operation>),
     /// A function.
     Call(Builtin, Vec<Term>),
-    /// The value of a table at its argument.
-    Lookup(usize, Box<Term>),
+    /// The value of a table at its arguments, or a derivative of it.
+    Lookup(Lookup, Vec<Term>),
     /// A vector, or a matrix by its rows.
     Vector(Vec<Term>),
     /// `if left < right { then } else { otherwise }`, with `left < right` as written.
@@ -44,6 +44,15 @@ pub enum TermKind {
     Guess(usize),
     /// A time integral since t = 0.
     Integral(usize),
+}
+
+/// What is asked of a table.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Lookup {
+    /// The table, an index into [`BondGraph::tables`](super::BondGraph::tables).
+    pub table: usize,
+    /// Its value (0), its derivative (1) or its second derivative (2) by the argument.
+    pub order: usize,
 }
 
 /// What a chain does next.
@@ -185,12 +194,14 @@ impl Term {
             | TermKind::Reference(_)
             | TermKind::Guess(_)
             | TermKind::Integral(_) => {}
-            TermKind::Component(inner, _) | TermKind::Negate(inner) | TermKind::Lookup(_, inner) => inner.visit(each),
+            TermKind::Component(inner, _) | TermKind::Negate(inner) => inner.visit(each),
             TermKind::Chain(first, rest) => {
                 first.visit(each);
                 rest.iter().for_each(|operation| operation.operand.visit(each));
             }
-            TermKind::Call(_, parts) | TermKind::Vector(parts) => parts.iter().for_each(|part| part.visit(each)),
+            TermKind::Call(_, parts) | TermKind::Lookup(_, parts) | TermKind::Vector(parts) => {
+                parts.iter().for_each(|part| part.visit(each));
+            }
             TermKind::If(_, _, parts) => parts.iter().for_each(|part| part.visit(each)),
         }
     }
@@ -228,7 +239,7 @@ impl Term {
                     BinaryOperator::Divide => (right == 0).then_some(degree),
                 }
             }),
-            TermKind::Lookup(_, argument) => Some(0).filter(|_| argument.degree() == Some(0)),
+            TermKind::Lookup(_, arguments) => arguments.iter().all(|part| part.degree() == Some(0)).then_some(0),
             TermKind::Call(builtin, arguments) => degree_of_call(*builtin, arguments),
             TermKind::Vector(parts) => {
                 let is_zero = |part: &&Term| matches!(part.kind, TermKind::Number(0.0));

@@ -7,7 +7,7 @@ use std::cell::RefCell;
 
 use proc_macro2::Span;
 
-use super::term::{Builtin, Operation, Reference, Term, TermKind};
+use super::term::{Builtin, Lookup, Operation, Reference, Term, TermKind};
 use super::{BondGraph, GraphFault, NodeId, NodeKind};
 use crate::fault::{Explain, Fault};
 use bg_units::Unit;
@@ -110,8 +110,8 @@ impl<'a> Types<'a> {
         Checker { types: self, variable: None, number: Quantity::Known(Dimension::NONE), faults }.check(term)
     }
 
-    /// Shape and unit of what may be declared in a unit. Where that is not coherent, bare numbers are pure numbers: nobody
-    /// could say whether they are in SI or in that unit.
+    /// Shape and unit of what may be declared in a unit. Where that is not coherent, bare numbers are pure numbers:
+    /// nobody could say whether they are in SI or in that unit.
     pub fn declared(&self, term: &Term, unit: Option<Unit>, faults: &mut Vec<Fault>) -> Typed {
         if unit.is_none_or(Unit::is_coherent) {
             self.of(term, None, faults)
@@ -203,7 +203,7 @@ impl Checker<'_, '_> {
             TermKind::Reference(Reference::Let(index)) => self.types.of_let(*index),
             TermKind::Reference(reference) => self.types.of_reference(*reference, self.variable),
             TermKind::Negate(inner) => self.check(inner),
-            TermKind::Lookup(table, argument) => self.lookup(*table, argument),
+            TermKind::Lookup(lookup, arguments) => self.lookup(*lookup, arguments),
             TermKind::Component(inner, _) => {
                 let (shape, quantity) = self.check(inner);
                 if shape != Shape::Vector {
@@ -231,22 +231,25 @@ impl Checker<'_, '_> {
         }
     }
 
-    /// The value of a table, whose argument has the declared unit.
-    fn lookup(&mut self, table: usize, argument: &Term) -> Typed {
+    /// The value of a table, whose arguments have the declared units, or a derivative of it.
+    fn lookup(&mut self, Lookup { table, order }: Lookup, arguments: &[Term]) -> Typed {
         let table = &self.types.graph.tables[table];
-        let (shape, quantity) = self.check(argument);
-        let what = || format!("the argument of the table `{}`", table.name);
-        if shape != Shape::Scalar {
-            let fault = GraphFault::ShapeOf { what: what(), expected: Shape::Scalar, found: shape };
-            self.fault(argument.span, &fault);
+        for (argument, &declared) in arguments.iter().zip(&table.arguments) {
+            let (shape, quantity) = self.check(argument);
+            let what = || format!("the argument of the table `{}`", table.name);
+            if shape != Shape::Scalar {
+                let fault = GraphFault::ShapeOf { what: what(), expected: Shape::Scalar, found: shape };
+                self.fault(argument.span, &fault);
+            }
+            if let Quantity::Known(found) = quantity
+                && found != declared
+            {
+                let what = format!("{} has the first and is declared in the second", what());
+                self.fault(argument.span, &GraphFault::Units { what, left: found, right: declared });
+            }
         }
-        if let Quantity::Known(found) = quantity
-            && found != table.argument
-        {
-            let what = format!("{} has the first and is declared in the second", what());
-            self.fault(argument.span, &GraphFault::Units { what, left: found, right: table.argument });
-        }
-        (Shape::Scalar, Quantity::Known(table.value))
+        let dimension = (0..order).fold(table.value, |dimension, _| dimension.per(table.arguments[0]));
+        (Shape::Scalar, Quantity::Known(dimension))
     }
 
     /// Two terms that must have the same shape and unit.

@@ -95,7 +95,9 @@ pub enum Item {
     Let(Let),
     /// `state NAME: UNIT = RATE start E;`
     State(State),
-    /// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`
+    /// `memory NAME: UNIT = E while E < E start E;`
+    Memory(Memory),
+    /// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`, with two arguments `table NAME: UNIT, UNIT -> ..`
     Table(Table),
     /// `1 NAME;`, `0 NAME[3]: translation;`
     Junction(Junction),
@@ -133,6 +135,8 @@ pub enum Item {
     Drive(Drive),
     /// `contact NAME (a.P -> b.Q along x) { ... }`
     Contact(Contact),
+    /// `contact NAME (a.P circle E -> b.Q line x) { ... }`
+    ShapeContact(ShapeContact),
     /// `friction NAME on TARGET { ... }`
     Friction(Friction),
     /// `stop NAME on TARGET { ... }`
@@ -224,16 +228,40 @@ pub struct State {
     pub start: Option<Expression>,
 }
 
-/// A function of one variable that is given by points.
+/// A value that is kept: it follows another one while a condition holds.
+#[derive(Clone, Debug)]
+pub struct Memory {
+    /// Its name.
+    pub name: Name,
+    /// Its unit.
+    pub unit: Unit,
+    /// What it follows, by the condition, and otherwise what is kept: a state named `NAME.kept`.
+    pub following: Choice,
+    /// What is kept at t = 0; 0 when left out.
+    pub start: Option<Expression>,
+}
+
+impl Memory {
+    /// The name of the state that keeps the value.
+    #[must_use]
+    pub fn kept(name: &Name) -> Name {
+        Name::new(format!("{}.kept", name.text), name.span)
+    }
+}
+
+/// A function of one variable or two that is given by points.
 #[derive(Clone, Debug)]
 pub struct Table {
     /// Its name, by which expressions call it.
     pub name: Name,
     /// The unit of its argument.
     pub argument: Unit,
+    /// The unit of its second argument, if it has one.
+    pub second: Option<Unit>,
     /// The unit of its value.
     pub value: Unit,
-    /// The points: pairs of numbers, the arguments ascending.
+    /// The points: pairs of numbers, the arguments ascending. With two arguments a row of the second ones, then rows of
+    /// a first one with the values.
     pub points: Expression,
     /// What it is between its points.
     pub between: Between,
@@ -263,6 +291,8 @@ pub enum Beyond {
     Held,
     /// A straight line with the slope at its end.
     Continued,
+    /// The same again and again: its last point is its first one, a period later.
+    Periodic,
 }
 
 /// A unit as written, `kg*m^2/s`: factors with their exponents (negative after a `/`). `1` has none.
@@ -743,6 +773,10 @@ pub struct Joint {
     pub tilt_stiffness: Option<Expression>,
     /// `tilt damping E;`, N*m*s/rad.
     pub tilt_damping: Option<Expression>,
+    /// `clearance E;` by how much the radius of the hole is above that of the pin, m.
+    pub clearance: Option<Expression>,
+    /// `restitution E;` of a pin with a clearance, in the place of the damping.
+    pub restitution: Option<Expression>,
     /// `frame inertial;`: held rotations are the integrals of the relative angular velocity in inertial axes.
     pub inertial: bool,
     /// `rigid;`: an ideal joint, without stiffness and damping; its reactions keep the held motions zero.
@@ -803,6 +837,115 @@ pub struct Contact {
     pub along: Axis,
     /// The laws per axis of the second body.
     pub laws: Vec<AxisLaw>,
+}
+
+/// A contact of two shapes, which push each other and never pull.
+#[derive(Clone, Debug)]
+pub struct ShapeContact {
+    /// Its name.
+    pub name: Name,
+    /// Where the shapes are.
+    pub ends: Ends,
+    /// What they are.
+    pub shapes: [Touching; 2],
+    /// How they push.
+    pub law: PressLaw,
+}
+
+/// How what touches pushes.
+#[derive(Clone, Debug, Default)]
+pub struct PressLaw {
+    /// `stiffness E;` N/m, with an exponent n N/m^n.
+    pub stiffness: Option<Expression>,
+    /// `exponent E;` of the depth; 1 when left out.
+    pub exponent: Option<Expression>,
+    /// `damping E;` N*s/m.
+    pub damping: Option<Expression>,
+    /// `dissipation E;` by how much a speed raises the force, s/m.
+    pub dissipation: Option<Expression>,
+    /// `restitution E;` the part of the speed with which what hits parts.
+    pub restitution: Option<Expression>,
+    /// `rest below E;` the speed of approach below which what hits counts as that fast, m/s.
+    pub rest: Option<Expression>,
+}
+
+impl PressLaw {
+    /// Its clauses in the order in which they are printed.
+    pub fn clauses_mut(&mut self) -> [(&'static str, &mut Option<Expression>); 6] {
+        let Self { stiffness, exponent, damping, dissipation, restitution, rest } = self;
+        [
+            ("stiffness", stiffness),
+            ("exponent", exponent),
+            ("damping", damping),
+            ("dissipation", dissipation),
+            ("restitution", restitution),
+            ("rest below", rest),
+        ]
+    }
+}
+
+/// A shape that touches another one.
+#[derive(Clone, Debug)]
+pub enum Touching {
+    /// The end itself.
+    Point,
+    /// `circle E`: in the plane across the end's z axis, radius in m.
+    Circle(Expression),
+    /// `hole E`: the inside of a circle, or around a sphere of one, radius in m.
+    Hole(Expression),
+    /// `sphere E`: radius in m.
+    Sphere(Expression),
+    /// `line x`: along an axis of the end; what is free is to its left, seen from where z points to.
+    Line(Axis),
+    /// `plane z`: through the end, with this outward normal.
+    Plane(Axis),
+    /// `profile TABLE`: the distance of the outline by the angle about the end's z axis, or its height over the x axis.
+    Profile(Name),
+}
+
+impl Touching {
+    /// Its word.
+    #[must_use]
+    pub fn word(&self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Circle(_) => "circle",
+            Self::Hole(_) => "hole",
+            Self::Sphere(_) => "sphere",
+            Self::Line(_) => "line",
+            Self::Plane(_) => "plane",
+            Self::Profile(_) => "profile",
+        }
+    }
+
+    /// Its radius.
+    #[must_use]
+    pub fn radius(&self) -> Option<&Expression> {
+        match self {
+            Self::Circle(radius) | Self::Hole(radius) | Self::Sphere(radius) => Some(radius),
+            Self::Point | Self::Line(_) | Self::Plane(_) | Self::Profile(_) => None,
+        }
+    }
+
+    /// The same to be changed.
+    pub fn radius_mut(&mut self) -> Option<&mut Expression> {
+        match self {
+            Self::Circle(radius) | Self::Hole(radius) | Self::Sphere(radius) => Some(radius),
+            Self::Point | Self::Line(_) | Self::Plane(_) | Self::Profile(_) => None,
+        }
+    }
+
+    /// Of two shapes the one with the lower rank has the axes in which they meet.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        match self {
+            Self::Profile(_) => 0,
+            Self::Line(_) | Self::Plane(_) => 1,
+            Self::Hole(_) => 2,
+            Self::Circle(_) | Self::Sphere(_) => 3,
+            Self::Point => 4,
+        }
+    }
 }
 
 /// Dry friction on a free axis, along a contact's line or at a junction.
@@ -979,7 +1122,8 @@ pub struct Operation {
 }
 
 impl Expression {
-    /// The same, where numbers only are in this unit: SI or a quantity. A coherent unit changes nothing, nor does any unit change 0.
+    /// The same, where numbers only are in this unit: SI or a quantity. A coherent unit changes nothing, nor does any
+    /// unit change 0.
     #[must_use]
     pub fn in_unit(self, unit: &Unit) -> Self {
         match self.number() {

@@ -51,6 +51,8 @@ pub enum Allowed {
     Invertible,
     /// Numbers from 0 to 1.
     Fraction,
+    /// Numbers between 0 and 1, neither of them.
+    Part,
     /// The way to the end of a stop, which is not negative but for what closing the joints leaves of it.
     Clearance,
     /// The inertia of a rigid body: principal moments or a symmetric matrix, positive, none of the moments larger than

@@ -8,8 +8,9 @@ use std::fmt::{Display, Formatter, Result};
 use crate::source::ast::{
     Axis, AxisLaw, Baumgarte, Between, Beyond, Body, Bound, Choice, Close, Contact, Direction, Drive, Element,
     ElementKind, Ends, Expectation, Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input, Item,
-    Joint, JointKind, Junction, JunctionKind, LawVariable, Let, Name, Observation, Operation, Orifice, Parameter, Part,
-    Point, Rigid, Role, Scene, Shape, Solid, Source, Spring, State, Stop, Table, Track, Tune, Unit, Watch,
+    Joint, JointKind, Junction, JunctionKind, LawVariable, Let, Memory, Name, Observation, Operation, Orifice,
+    Parameter, Part, Point, Rigid, Role, Scene, Shape, ShapeContact, Solid, Source, Spring, State, Stop, Table,
+    Touching, Track, Tune, Unit, Watch,
 };
 use crate::source::words::{
     AXES, BETWEEN, BEYOND, COMPARISONS, DRIVES, ELEMENTS, OPERATORS, ROLES, TRACKS, strength, word_of,
@@ -56,7 +57,7 @@ pub(super) fn statements(f: &mut Formatter<'_>, items: &[Item]) -> Result {
 const fn section(item: &Item) -> Option<u8> {
     match item {
         Item::Parameter(_) | Item::Input(_) => Some(0),
-        Item::Let(_) | Item::Table(_) | Item::State(_) => Some(1),
+        Item::Let(_) | Item::Table(_) | Item::State(_) | Item::Memory(_) => Some(1),
         Item::Junction(_) | Item::Element(_) => Some(2),
         Item::Chain(_) => Some(3),
         Item::Track(_) => Some(4),
@@ -121,6 +122,7 @@ impl Display for Item {
             Self::Parameter(parameter) => parameter.fmt(f),
             Self::Table(table) => table.fmt(f),
             Self::State(state) => state.fmt(f),
+            Self::Memory(memory) => memory.fmt(f),
             Self::Input(input) => input.fmt(f),
             Self::Let(binding) => binding.fmt(f),
             Self::Junction(junction) => junction.fmt(f),
@@ -144,6 +146,7 @@ impl Display for Item {
             Self::Spring(spring) => spring.fmt(f),
             Self::Drive(drive) => drive.fmt(f),
             Self::Contact(contact) => contact.fmt(f),
+            Self::ShapeContact(contact) => contact.fmt(f),
             Self::Friction(friction) => friction.fmt(f),
             Self::Stop(stop) => stop.fmt(f),
             Self::Orifice(orifice) => orifice.fmt(f),
@@ -450,6 +453,8 @@ impl Display for Joint {
         setting(&mut entries, "damping", self.damping.as_ref());
         setting(&mut entries, "tilt stiffness", self.tilt_stiffness.as_ref());
         setting(&mut entries, "tilt damping", self.tilt_damping.as_ref());
+        setting(&mut entries, "clearance", self.clearance.as_ref());
+        setting(&mut entries, "restitution", self.restitution.as_ref());
         entries.extend(self.inertial.then(|| "frame inertial;".into()));
         entries.extend(self.rigid.then(|| "rigid;".into()));
         write!(f, "joint {}: {} ({})", self.name, self.kind, self.ends)?;
@@ -488,6 +493,30 @@ impl Display for Contact {
         });
         write!(f, "contact {} ({} along {}) ", self.name, self.ends, word_of(&AXES, &self.along))?;
         block(f, &laws.collect::<Vec<_>>())
+    }
+}
+
+impl Display for ShapeContact {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let mut entries = Vec::new();
+        for (clause, value) in self.law.clone().clauses_mut() {
+            setting(&mut entries, clause, value.as_ref());
+        }
+        let Self { name, ends: Ends { from, to }, shapes: [first, second], .. } = self;
+        write!(f, "contact {name} ({from}{first} -> {to}{second})")?;
+        settings(f, &entries)
+    }
+}
+
+/// With a blank in front, since it stands after an end; a point is nothing.
+impl Display for Touching {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        match self {
+            Self::Point => Ok(()),
+            Self::Circle(radius) | Self::Hole(radius) | Self::Sphere(radius) => write!(f, " {} {radius}", self.word()),
+            Self::Line(axis) | Self::Plane(axis) => write!(f, " {} {}", self.word(), word_of(&AXES, axis)),
+            Self::Profile(table) => write!(f, " profile {table}"),
+        }
     }
 }
 
@@ -539,10 +568,19 @@ impl Display for State {
     }
 }
 
+impl Display for Memory {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let Self { name, unit, following: Choice { comparison, left, right, then, .. }, start } = self;
+        let sign = word_of(&COMPARISONS, comparison);
+        write!(f, "memory {name}: {unit} = {then} while {left} {sign} {right}{};", clause("start", start.as_ref()))
+    }
+}
+
 impl Display for Table {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
-        let Self { name, argument, value, points, between, beyond } = self;
-        write!(f, "table {name}: {argument} -> {value} = {points}")?;
+        let Self { name, argument, second, value, points, between, beyond } = self;
+        let second = second.as_ref().map(|second| format!(", {second}")).unwrap_or_default();
+        write!(f, "table {name}: {argument}{second} -> {value} = {points}")?;
         if *between != Between::default() {
             write!(f, ", {}", word_of(&BETWEEN, between))?;
         }

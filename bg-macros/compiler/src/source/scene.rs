@@ -200,6 +200,7 @@ fn part_name(item: &Item) -> Option<&Name> {
     match item {
         Item::Joint(joint) => Some(&joint.name),
         Item::Contact(contact) => Some(&contact.name),
+        Item::ShapeContact(contact) => Some(&contact.name),
         Item::Spring(spring) => Some(&spring.name),
         Item::Drive(drive) => Some(&drive.name),
         Item::Friction(friction) => Some(&friction.name),

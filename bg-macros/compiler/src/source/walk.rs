@@ -4,8 +4,8 @@
 //! only known inside of the item, such as a body's points, is not met.
 
 use crate::source::ast::{
-    Body, Element, Ends, Expression, ExpressionKind, Friction, Item, LawVariable, Name, Observation, Point, Port,
-    Rigid, Scene, Shape, Solid, Tune, Use, Watch,
+    Body, Choice, Element, Ends, Expression, ExpressionKind, Friction, Item, LawVariable, Name, Observation, Point,
+    Port, Rigid, Scene, Shape, Solid, Touching, Tune, Use, Watch,
 };
 
 /// What is met.
@@ -36,6 +36,11 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
         Item::State(state) => {
             each(Met::Declared(&mut state.name));
             values(std::iter::once(&mut state.rate).chain(&mut state.start), each);
+        }
+        Item::Memory(memory) => {
+            each(Met::Declared(&mut memory.name));
+            let Choice { left, right, then, otherwise, .. } = &mut memory.following;
+            values([then, left, right, otherwise].into_iter().chain(&mut memory.start), each);
         }
         Item::Table(table) => {
             each(Met::Declared(&mut table.name));
@@ -68,7 +73,7 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
             ends(&mut joint.ends, each);
             let clauses =
                 [&mut joint.stiffness, &mut joint.damping, &mut joint.tilt_stiffness, &mut joint.tilt_damping];
-            values(clauses.into_iter().flatten(), each);
+            values(clauses.into_iter().chain([&mut joint.clearance, &mut joint.restitution]).flatten(), each);
         }
         Item::Spring(spring) => {
             each(Met::Declared(&mut spring.name));
@@ -87,6 +92,17 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
             for law in &mut contact.laws {
                 each(Met::Value(&mut law.law, variable(law.variable.as_ref())));
             }
+        }
+        Item::ShapeContact(contact) => {
+            each(Met::Declared(&mut contact.name));
+            ends(&mut contact.ends, each);
+            for shape in &mut contact.shapes {
+                if let Touching::Profile(table) = shape {
+                    each(Met::Named(table));
+                }
+                values(shape.radius_mut(), each);
+            }
+            values(contact.law.clauses_mut().into_iter().flat_map(|(_, value)| value), each);
         }
         Item::Friction(friction) => of_friction(friction, each),
         Item::Stop(stop) => {

@@ -33,7 +33,17 @@ pub(crate) const BETWEEN: [(&str, Between); 3] =
     [("straight", Between::Straight), ("monotone", Between::Monotone), ("spline", Between::Spline)];
 
 /// What a table is beyond its points, where that is said.
-pub(crate) const BEYOND: [(&str, Beyond); 2] = [("held", Beyond::Held), ("continued", Beyond::Continued)];
+pub(crate) const BEYOND: [(&str, Beyond); 3] =
+    [("held", Beyond::Held), ("continued", Beyond::Continued), ("periodic", Beyond::Periodic)];
+
+/// What follows the name of a table in a call that asks for a derivative, with its order.
+pub(crate) const DERIVATIVES: [(&str, usize); 2] = [("derivative", 1), ("second_derivative", 2)];
+
+/// The name of the table in the name of a called function, and the order of the derivative that is asked for.
+pub(crate) fn table_called(function: &str) -> (&str, usize) {
+    let of_order = |(word, order): (&str, usize)| Some((function.strip_suffix(word)?.strip_suffix('.')?, order));
+    DERIVATIVES.into_iter().find_map(of_order).unwrap_or((function, 0))
+}
 
 /// What a track follows.
 pub(crate) const TRACKS: [(&str, TrackKind); 2] =

@@ -283,7 +283,7 @@ pub(crate) fn element_of(graph: &BondGraph, origin: Origin) -> &str {
         | Origin::Angle(track)
         | Origin::Hinge(track, _)
         | Origin::Speed(track, _) => graph.tracks[track].junction,
-        Origin::Turn(_) | Origin::Integral(_) => return "",
+        Origin::Turn(_) | Origin::Integral(_) | Origin::Memory(_) => return "",
     };
     &graph.node(node).name.text
 }
@@ -297,7 +297,7 @@ const fn state_kind(origin: Origin) -> StateKind {
         Origin::Angle(_) => StateKind::Angle,
         Origin::Speed(..) => StateKind::Momentum(0),
         Origin::Turn(_) | Origin::Hinge(..) | Origin::Way(_) => StateKind::Way,
-        Origin::Integral(_) => StateKind::Integral,
+        Origin::Integral(_) | Origin::Memory(_) => StateKind::Integral,
     }
 }
 

@@ -24,7 +24,7 @@ use std::ops::Range;
 use crate::expr::Id;
 use crate::pipeline::Compiled;
 use crate::program::{SeriesSize, series_size};
-use crate::system::equations::Iteration;
+use crate::system::equations::{Iteration, Origin};
 
 /// What is known of a model beside its programs.
 #[derive(Clone, Debug, PartialEq)]
@@ -51,6 +51,8 @@ pub struct Tables {
     pub second: Range<usize>,
     /// For each switch whether the search for the first branches begins with its first branch.
     pub first_branches: Vec<bool>,
+    /// The states that keep what memories have followed.
+    pub memories: Vec<usize>,
     /// The laws that can give what is not finite, each the element's kind and name, in the order of the program.
     pub fallible: Vec<(&'static str, String)>,
     /// The joints of the loops whose pivots nothing shows to keep away from zero, in the order of the program.
@@ -106,6 +108,9 @@ pub fn tables(model: &Compiled, counted: Counted) -> Tables {
         settled: states(&equations.settled),
         series: series_size(&model.programs.running.rate, equations.found() > 0),
         second: model.second_order.states.clone(),
+        memories: (0..equations.states.len())
+            .filter(|&state| matches!(equations.states[state].origin, Origin::Memory(_)))
+            .collect(),
         first_branches: equations.switches.iter().map(|switch| switch.remembers).collect(),
         fallible: equations.fallible.iter().map(|law| (law.kind, law.element.clone())).collect(),
         turning: equations.turning().map(|law| law.element.clone()).collect(),

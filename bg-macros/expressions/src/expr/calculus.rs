@@ -99,7 +99,8 @@ fn slopes_of_selects(pool: &mut Pool, nodes: &[Id], active: &FxHashSet<Id>, wrt:
     slopes
 }
 
-/// The active children of a sum, product or call, each with the partial derivative by it.
+/// The active children of a sum, product or call, each with the partial derivative by it. An angle of its own sine and
+/// cosine changes as it does, without either.
 fn partials(pool: &mut Pool, id: Id, active: &dyn Fn(Id) -> bool) -> Vec<(Id, Id)> {
     match pool.node(id).clone() {
         Node::Number(_) | Node::Symbol(_) | Node::Select { .. } => Vec::new(),
@@ -111,6 +112,9 @@ fn partials(pool: &mut Pool, id: Id, active: &dyn Fn(Id) -> bool) -> Vec<(Id, Id
             let factors = factors.iter().filter(|(base, _)| active(*base));
             factors.map(|&(base, exponent)| (base, slope_of_power(pool, id, base, exponent))).collect()
         }
+        Node::Call(Function::Atan2, arguments) if let Some(angle) = angle_of_itself(pool, &arguments) => {
+            [angle].into_iter().filter(|&angle| active(angle)).map(|angle| (angle, pool.one())).collect()
+        }
         Node::Call(function, arguments) => {
             let positions = (0..arguments.len()).filter(|&position| active(arguments[position]));
             positions
@@ -118,6 +122,16 @@ fn partials(pool: &mut Pool, id: Id, active: &dyn Fn(Id) -> bool) -> Vec<(Id, Id
                 .collect()
         }
     }
+}
+
+/// The angle a of `atan2(sin a, cos a)`.
+fn angle_of_itself(pool: &Pool, arguments: &[Id]) -> Option<Id> {
+    let (Node::Call(Function::Sin, angle), Node::Call(Function::Cos, other)) =
+        (pool.node(arguments[0]), pool.node(*arguments.get(1)?))
+    else {
+        return None;
+    };
+    (angle == other).then_some(angle[0])
 }
 
 /// The partial derivative of a product by the base of one of its factors.

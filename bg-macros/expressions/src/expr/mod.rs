@@ -37,5 +37,5 @@ pub use pool::{Pool, children};
 pub(crate) use product::MOST_EXPONENT;
 pub use sign::{Signs, signs};
 pub use size::{Sized, sized};
-pub use substitute::{Branch, exchange, substitute, substitute_switched};
+pub use substitute::{Branch, blended, exchange, substitute, substitute_switched};
 pub use text::text;

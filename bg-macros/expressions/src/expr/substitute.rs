@@ -3,7 +3,7 @@
 //! In: nodes, and an expression for each symbol to be replaced. Out: the same nodes over the new symbols, in canonical
 //! form.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rustc_hash::FxHashMap;
 
@@ -58,7 +58,32 @@ pub fn exchange(pool: &mut Pool, roots: &[Id], places: &BTreeMap<Id, Id>) -> Vec
     roots.iter().map(|root| images[root]).collect()
 }
 
+/// The nodes without the switched values of which `below` has the switch: the part of the branch of a negative guard is
+/// what stands there, 1 or 0, that of the other one the rest.
+pub fn blended(pool: &mut Pool, roots: &[Id], below: &BTreeMap<u32, Id>) -> Vec<Id> {
+    let mut images: FxHashMap<Id, Id> = FxHashMap::default();
+    for id in pool.reachable(roots) {
+        let image = match *pool.node(id) {
+            Node::Select { switch, negative, positive } if below.contains_key(&switch) => {
+                let difference = pool.sub(images[&negative], images[&positive]);
+                let part = pool.mul(below[&switch], difference);
+                pool.add(part, images[&positive])
+            }
+            _ => pool.rebuilt(id, &images),
+        };
+        images.insert(id, image);
+    }
+    roots.iter().map(|root| images[root]).collect()
+}
+
 impl Pool {
+    /// The switches of all values that the roots are made of.
+    #[must_use]
+    pub fn switches(&self, roots: &[Id]) -> BTreeSet<u32> {
+        let switch = |id: &Id| if let Node::Select { switch, .. } = self.node(*id) { Some(*switch) } else { None };
+        self.reachable(roots).iter().filter_map(switch).collect()
+    }
+
     /// The node over the images of its children.
     pub(super) fn rebuilt(&mut self, id: Id, images: &FxHashMap<Id, Id>) -> Id {
         if children(self.node(id)).all(|child| images[&child] == child) {

@@ -62,6 +62,11 @@ pub trait Dynamics<S: Scalar = f64> {
     /// [`System::guards`].
     fn guards(&self, _t: S, _x: &[S], _negative: &[S::Switch], _guards: &mut [S]) {}
 
+    /// [`System::memories`].
+    fn memories(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
     /// [`System::first_branches`].
     fn first_branches(&self) -> Vec<bool> {
         vec![false; self.switches()]

@@ -46,6 +46,10 @@ where
         guards.copy_from_slice(values.as_slice());
     }
 
+    fn memories(&self) -> Vec<usize> {
+        self.0.memories().to_vec()
+    }
+
     fn first_branches(&self) -> Vec<bool> {
         self.0.first_branches().to_vec()
     }

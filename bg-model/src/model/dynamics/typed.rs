@@ -95,6 +95,10 @@ where
         self.of.guards(t, values(x), switches(negative), values_mut(guards));
     }
 
+    fn memories(&self) -> Vec<usize> {
+        self.of.memories().to_vec()
+    }
+
     fn first_branches(&self) -> Vec<bool> {
         self.of.first_branches().to_vec()
     }

@@ -34,7 +34,7 @@ pub(super) fn jumped(
 ) -> Option<Jump> {
     let Switching { before, after, jumps, .. } = event;
     let delays = delays(system, plain, x, event);
-    let is_smooth = !jumps && before.rate == after.rate;
+    let is_smooth = !jumps && before.rate == after.rate && system.memories().is_empty();
     // Where nothing changes but outputs the slopes do not need the instant.
     let delays = if is_smooth { delays.unwrap_or_default() } else { delays? };
     let t = Gradient::new(before.t, delays);
@@ -83,7 +83,8 @@ pub(super) fn guards(
     guards
 }
 
-/// The state `x` at the instant `t` (s) after the impact of an event, if it has one.
+/// The state `x` at the instant `t` (s) after the impact of an event, if it has one, with what memories keep from there
+/// on.
 pub(super) fn struck(
     system: &dyn Dynamics<Gradient>,
     event: &Switching,
@@ -97,5 +98,20 @@ pub(super) fn struck(
         let mut collision = Collision::new(stops, system.kept_of_stops());
         collision.strike(&impacts_of(system), (t, &mut x), negative_before, closed, is_low);
     }
+    // As the step to the event and the event itself do: what a memory follows is taken at this instant, which depends
+    // on the parameters.
+    let changed = negative_before.iter().zip(reached).map(|(negative, reached)| negative != reached).collect();
+    for memory in system.memories() {
+        for negative in [negative_before, &changed] {
+            let mut projected = x.clone();
+            system.project(t, negative, &mut projected);
+            x[memory] = projected[memory];
+        }
+    }
     x
+}
+
+/// Whether an event leads from one state to another one.
+pub(super) fn leads_on(system: &dyn Dynamics<Gradient>, event: &Switching) -> bool {
+    event.jumps || !system.memories().is_empty()
 }

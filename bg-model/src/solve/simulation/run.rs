@@ -428,6 +428,7 @@ impl<'a> Run<'a> {
         let (before, point) = (self.stepper.negative.clone(), self.stepper.start.clone());
         let struck = self.monitor.strike(&mut self.stepper, reached.to_vec(), self.collision.as_mut());
         let Struck { switches, rebounds, jumps } = struck;
+        self.stepper.remember(&switches);
         self.monitor.settle(&mut self.stepper, switches.clone(), self.controller.reach());
         self.check_start()?;
         if jumps || self.stepper.negative != before {

@@ -37,6 +37,8 @@ pub(crate) struct Stepper<'a> {
     samples_are_ready: bool,
     /// Whether joints may be rigid.
     is_held: bool,
+    /// What memories keep, which a projection moves far.
+    memories: Vec<usize>,
     /// A state before it is projected.
     before: DVector<f64>,
 }
@@ -57,6 +59,7 @@ impl<'a> Stepper<'a> {
             dense_is_ready: false,
             samples_are_ready: false,
             is_held: system.held().is_some(),
+            memories: system.memories(),
         }
     }
 
@@ -111,10 +114,10 @@ impl<'a> Stepper<'a> {
             self.system.project(self.end.t, &self.negative, self.end.x.as_mut_slice());
             return 0.0;
         }
-        let Self { system, scale, negative, end, before, .. } = self;
+        let Self { system, scale, negative, end, before, memories, .. } = self;
         before.copy_from(&end.x);
         system.project(end.t, negative, end.x.as_mut_slice());
-        moved(scale, before.as_slice(), end.x.as_slice())
+        moved(scale, memories, before.as_slice(), end.x.as_slice())
     }
 
     /// The same until it moves no more. What one of Newton's steps leaves is below the tolerances, but not below what a
@@ -135,7 +138,18 @@ impl<'a> Stepper<'a> {
         }
     }
 
-    /// The same with any state, at time `t` (s).
+    /// Lets what memories keep follow at the start of the next step, where these switches change: also where the branch
+    /// in which they follow holds at that instant only, because what they give leads out of it.
+    pub fn remember(&mut self, switches: &[bool]) {
+        if self.memories.is_empty() {
+            return;
+        }
+        let changed: Vec<bool> =
+            self.negative.iter().zip(switches).map(|(negative, changes)| negative != changes).collect();
+        self.system.project(self.start.t, &changed, self.start.x.as_mut_slice());
+    }
+
+    /// Projects any state, at time `t` (s); gives the norm of what that changes, as [`Stepper::project`].
     pub fn project_state(&mut self, t: f64, x: &mut [f64]) -> f64 {
         if !self.is_held {
             self.system.project(t, &self.negative, x);
@@ -143,13 +157,13 @@ impl<'a> Stepper<'a> {
         }
         self.before.as_mut_slice().copy_from_slice(x);
         self.system.project(t, &self.negative, x);
-        moved(&self.scale, self.before.as_slice(), x)
+        moved(&self.scale, &self.memories, self.before.as_slice(), x)
     }
 
     /// The norm of what a projection has changed where joints may be rigid, else 0.
     #[cfg(feature = "std")]
     pub fn moved(&self, before: &[f64], after: &[f64]) -> f64 {
-        if self.is_held { moved(&self.scale, before, after) } else { 0.0 }
+        if self.is_held { moved(&self.scale, &self.memories, before, after) } else { 0.0 }
     }
 
     /// The norm of what the projection makes of the rounding of a state `x` at the end of the step, which grows into a
@@ -247,8 +261,8 @@ impl<'a> Stepper<'a> {
         self.method.sample(self.start.borrowed(), self.h, self.end.borrowed(), theta, x);
     }
 
-    /// The same at time `t` (s), projected so many times at most. The dense output errs more than the step, and most near
-    /// a singular pose.
+    /// The same at time `t` (s), projected so many times at most. The dense output errs more than the step, and most
+    /// near a singular pose.
     pub fn projected_sample(&mut self, theta: f64, t: f64, most: usize, x: &mut [f64]) {
         self.sample(theta, x);
         let _ = (0..most).find(|_| self.project_state(t, x) <= MOVED);
@@ -270,9 +284,9 @@ impl<'a> Stepper<'a> {
     }
 }
 
-/// The norm of what a projection has changed.
-fn moved(scale: &Scale, before: &[f64], after: &[f64]) -> f64 {
-    scale.norm_of(after, |i| after[i] - before[i])
+/// The norm of what a projection has changed, but for what memories keep.
+fn moved(scale: &Scale, memories: &[usize], before: &[f64], after: &[f64]) -> f64 {
+    scale.norm_of(after, |i| if memories.contains(&i) { 0.0 } else { after[i] - before[i] })
 }
 
 /// A state with each number as the next rounding would have it, up or down.

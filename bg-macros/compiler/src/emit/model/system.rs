@@ -25,6 +25,7 @@ impl Emission<'_> {
         let (rate, guards, project) = (self.rate(), self.guards(), self.project());
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
         let (next_break, first_branches, iterations) = (self.next_break(), self.first_branches(), self.iterations());
+        let memories = self.memories();
         let (runs_in_lanes, pivots) = (self.runs_in_lanes(), self.pivots());
         quote! {
             #iterations
@@ -34,6 +35,7 @@ impl Emission<'_> {
                 #project
                 #next_break
                 #first_branches
+                #memories
                 #runs_in_lanes
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
@@ -152,6 +154,18 @@ impl Emission<'_> {
             quote! {
                 fn next_break(&self, t: f64) -> f64 {
                     ::bg_model::input::next_break([#(&self.inputs.#inputs),*], t)
+                }
+            }
+        })
+    }
+
+    /// The states that keep what memories have followed; nothing where there are none.
+    fn memories(&self) -> Option<TokenStream> {
+        let memories = &self.tables.memories;
+        (!memories.is_empty()).then(|| {
+            quote! {
+                fn memories(&self) -> &'static [usize] {
+                    &[#(#memories),*]
                 }
             }
         })

@@ -8,10 +8,11 @@ use super::quantity::scaled;
 use super::tables::nearest_call;
 use super::{Entity, Place, Resolver};
 use crate::fault::near_miss;
-use crate::graph::term::{Builtin, Operation, Reference, Term, TermKind};
+use crate::graph::term::{Builtin, Lookup, Operation, Reference, Term, TermKind};
 use crate::graph::units::Dimension;
 use crate::graph::{GraphFault, Integral, NodeId, Turn};
 use crate::source::ast::{self, BinaryOperator, Expression, ExpressionKind, Name};
+use crate::source::words::table_called;
 
 impl Resolver {
     pub(super) fn term(&mut self, expression: &Expression, place: Place<'_>) -> Term {
@@ -47,8 +48,9 @@ impl Resolver {
     fn call(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
         let span = function.span;
         let mut terms: Vec<Term> = arguments.iter().map(|argument| self.term(argument, place)).collect();
-        if let Some(&Entity::Table(table)) = self.names.get(&function.text) {
-            return self.lookup(table, function, terms);
+        let (table, order) = table_called(&function.text);
+        if let Some(&Entity::Table(table)) = self.names.get(table) {
+            return self.lookup(Lookup { table, order }, function, terms);
         }
         let builtin = Builtin::named(&function.text);
         let expected = match function.text.as_str() {
@@ -83,7 +85,14 @@ impl Resolver {
                 }
                 let (value, name) = (terms.remove(0), String::new());
                 let dimension = Dimension::NONE;
-                self.graph.integrals.push(Integral { name, value, dimension, declared: None, start: None });
+                self.graph.integrals.push(Integral {
+                    name,
+                    value,
+                    dimension,
+                    declared: None,
+                    start: None,
+                    follows: None,
+                });
                 TermKind::Integral(self.graph.integrals.len() - 1)
             }
             ("unwrapped", _) => {

@@ -191,7 +191,12 @@ impl Resolver {
                     lets += 1;
                 }
                 Item::Table(table) => self.table(table),
-                Item::State(state) => self.declare_state(state),
+                Item::State(state) => self.declare_state(&state.name, &state.unit),
+                Item::Memory(memory) => {
+                    self.declare_state(&ast::Memory::kept(&memory.name), &memory.unit);
+                    self.name(&memory.name, Entity::Let(lets));
+                    lets += 1;
+                }
                 Item::Junction(junction) => {
                     self.junction(junction, NodeId(nodes));
                     nodes += 1;
@@ -265,12 +270,24 @@ impl Resolver {
     }
 
     /// A state of the graph's own, without its terms.
-    fn declare_state(&mut self, state: &ast::State) {
-        let unit = self.unit(&state.unit);
-        self.name(&state.name, Entity::Own(self.graph.integrals.len()));
-        let value = Term { kind: TermKind::Number(0.0), span: state.name.span };
-        let (name, declared) = (state.name.text.clone(), Some(unit.dimension));
-        self.graph.integrals.push(Integral { name, value, dimension: Dimension::NONE, declared, start: None });
+    fn declare_state(&mut self, name: &Name, unit: &ast::Unit) {
+        let unit = self.unit(unit);
+        self.name(name, Entity::Own(self.graph.integrals.len()));
+        let value = Term { kind: TermKind::Number(0.0), span: name.span };
+        let (name, declared) = (name.text.clone(), Some(unit.dimension));
+        let (dimension, start, follows) = (Dimension::NONE, None, None);
+        self.graph.integrals.push(Integral { name, value, dimension, declared, start, follows });
+    }
+
+    /// A value that is kept: a `let`, which its state follows.
+    fn memory(&mut self, memory: &ast::Memory, own: usize) {
+        let kind = ast::ExpressionKind::If(Box::new(memory.following.clone()));
+        let value = self.term(&Expression { kind, span: memory.name.span }, Place::Law(None));
+        let start = memory.start.as_ref().map(|start| self.term(start, Place::Start));
+        let (declared, unit) = (Some(self.unit(&memory.unit)), Some(memory.unit.to_string()));
+        self.graph.integrals[own].start = start;
+        self.graph.integrals[own].follows = Some(self.graph.lets.len());
+        self.graph.lets.push(Let { name: memory.name.clone(), value, declared, unit, clause: None });
     }
 
     /// Second pass: every item gets its terms.
@@ -299,6 +316,10 @@ impl Resolver {
                     let start = state.start.as_ref().map(|start| self.term(start, Place::Start));
                     let known = &mut self.graph.integrals[own];
                     (known.value, known.start) = (rate, start);
+                    own += 1;
+                }
+                Item::Memory(memory) => {
+                    self.memory(memory, own);
                     own += 1;
                 }
                 Item::Element(element) => self.element(element),

@@ -3,7 +3,7 @@
 //! In: its name. Out: the junction to bond to, with the units of its domain where that is known.
 
 use super::{Expansion, MechanismFault};
-use crate::source::ast::{Contact, Item, Name};
+use crate::source::ast::{Contact, Item, Name, ShapeContact, Touching};
 
 /// The units of a domain's laws; empty where the domain is not known.
 pub(super) struct Units {
@@ -27,6 +27,8 @@ pub(super) struct FreeAxis {
     pub units: &'static Units,
     /// The joint, if it is one.
     pub joint: Option<String>,
+    /// The force that presses where shapes touch, N.
+    pub pressed: Option<String>,
 }
 
 impl FreeAxis {
@@ -42,7 +44,13 @@ impl Expansion<'_> {
         let axis = self.axis_of(&target.text);
         if axis.is_none() {
             let (name, target_name) = (name.text.clone(), target.text.clone());
-            self.fault(target.span, &MechanismFault::NoFreeAxis { word, name, target: target_name });
+            let is_in_space = self.shape_contacts().any(|contact| contact.name.text == target.text);
+            let fault = if is_in_space {
+                MechanismFault::InSpace { word, name, target: target_name }
+            } else {
+                MechanismFault::NoFreeAxis { word, name, target: target_name }
+            };
+            self.fault(target.span, &fault);
         }
         axis
     }
@@ -53,20 +61,33 @@ impl Expansion<'_> {
         if let Some(joint) = self.joints.get(first) {
             let free = |axis: &str, units| {
                 let (junction, joint) = (format!("{first}.{axis}"), Some(first.to_owned()));
-                FreeAxis { junction, units, joint }
+                FreeAxis { junction, units, joint, pressed: None }
             };
             let spin = joint.kind.spin().filter(|_| axis != Some("slide")).map(|_| free("spin", &ROTATION));
             return spin
                 .or_else(|| joint.kind.slide().filter(|_| axis != Some("spin")).map(|_| free("slide", &TRANSLATION)));
         }
+        let of_shapes = |contact: &&ShapeContact| target.strip_suffix(".slide").unwrap_or(target) == contact.name.text;
+        if let Some(ShapeContact { name, shapes, .. }) = self.shape_contacts().find(of_shapes) {
+            let is_in_space = shapes.iter().any(|shape| matches!(shape, Touching::Sphere(_) | Touching::Plane(_)));
+            let (junction, pressed) = (format!("{name}.slide"), Some(format!("{name}.pressed")));
+            return (!is_in_space).then_some(FreeAxis { junction, units: &TRANSLATION, joint: None, pressed });
+        }
         let contact = self.contacts().find(|contact| contact.name.text == target);
         let line = contact.map(|contact| format!("{target}.{}", contact.along.letter()));
         let units = if line.is_some() { &TRANSLATION } else { &UNKNOWN };
-        Some(FreeAxis { junction: line.unwrap_or_else(|| target.to_owned()), units, joint: None })
+        Some(FreeAxis { junction: line.unwrap_or_else(|| target.to_owned()), units, joint: None, pressed: None })
     }
 
     fn contacts(&self) -> impl Iterator<Item = &Contact> {
         self.source.items.iter().filter_map(|item| if let Item::Contact(contact) = item { Some(contact) } else { None })
+    }
+
+    fn shape_contacts(&self) -> impl Iterator<Item = &ShapeContact> {
+        self.source
+            .items
+            .iter()
+            .filter_map(|item| if let Item::ShapeContact(contact) = item { Some(contact) } else { None })
     }
 
     /// Whether a friction or a stop acts on this junction of an axis.

@@ -20,6 +20,12 @@ pub enum MechanismFault {
     NoLaw { name: String },
     NoFreeAxis { word: &'static str, name: String, target: String },
     RestitutionAnd { name: String, clause: &'static str },
+    InSpace { word: &'static str, name: String, target: String },
+    ShapesApart { name: String, one: &'static str, other: &'static str },
+    LineAcross { name: String },
+    UnknownTable { name: String, near: Option<String> },
+    RoughProfile { table: String, contact: String },
+    OpenProfile { table: String, contact: String },
 }
 
 use MechanismFault as F;
@@ -39,8 +45,12 @@ impl Explain for MechanismFault {
             F::SameBody { .. } => "BG0210",
             F::SameAxes { .. } => "BG0211",
             F::NoLaw { .. } => "BG0212",
-            F::NoFreeAxis { .. } => "BG0213",
+            F::NoFreeAxis { .. } | F::InSpace { .. } => "BG0213",
             F::RestitutionAnd { .. } => "BG0214",
+            F::ShapesApart { .. } => "BG0231",
+            F::LineAcross { .. } => "BG0232",
+            F::UnknownTable { .. } => "BG0233",
+            F::RoughProfile { .. } | F::OpenProfile { .. } => "BG0234",
         }
     }
 
@@ -63,8 +73,20 @@ impl Explain for MechanismFault {
             F::NoFreeAxis { word, name, target } => {
                 format!("{word} `{name}` has no axis to act on: `{target}` leaves none free")
             }
+            F::InSpace { word, name, target } => {
+                format!("{word} `{name}` cannot act on `{target}`: its shapes touch in space, where nothing rubs")
+            }
             F::RestitutionAnd { name, clause } => {
                 format!("stop `{name}` has both `restitution` and `{clause}`: it is rigid or it gives way")
+            }
+            F::ShapesApart { name, one, other } => format!("contact `{name}` cannot be of a {one} and a {other}"),
+            F::LineAcross { name } => format!("the line of contact `{name}` stands on the plane of the shapes"),
+            F::UnknownTable { name, .. } => format!("there is no table `{name}` for the profile"),
+            F::RoughProfile { table, contact } => {
+                format!("the profile `{table}` of contact `{contact}` has corners: straight lines between its points")
+            }
+            F::OpenProfile { table, contact } => {
+                format!("the profile `{table}` of contact `{contact}` is one of an angle and does not close")
             }
         }
     }
@@ -97,6 +119,21 @@ impl Explain for MechanismFault {
             F::NoLaw { .. } => "add one, such as `y: C = k, R = r;`".to_owned(),
             F::NoFreeAxis { .. } => {
                 "name a revolute, prismatic or cylindrical joint, a contact, or a 1-junction".to_owned()
+            }
+            F::InSpace { .. } => "write `circle` for `sphere` and `line` for `plane` if they meet in a plane".to_owned(),
+            F::ShapesApart { .. } => {
+                "in the plane `circle`, `hole`, `line`, `profile` and points touch, in space `sphere`, `plane`, a `hole` \
+                 around a `sphere`, and points"
+                    .to_owned()
+            }
+            F::LineAcross { .. } => "write `line x` or `line y`, or `plane z` for a sphere".to_owned(),
+            F::UnknownTable { near: Some(near), .. } => format!("did you mean `{near}`?"),
+            F::UnknownTable { name, .. } => {
+                format!("declare `table {name}: deg -> mm = [[0, 30], .., [360, 30]], spline, periodic;`")
+            }
+            F::RoughProfile { .. } => "write `spline` or `monotone` after the points of the table".to_owned(),
+            F::OpenProfile { .. } => {
+                "write `periodic` after the points of the table, which end a turn after the first one".to_owned()
             }
             F::RestitutionAnd { clause, .. } => format!("remove `{clause}`, or `restitution`"),
         }

@@ -80,6 +80,9 @@ impl Expansion<'_> {
             let pressed = if normal.number().is_some() { format!("{name}.normal") } else { pressed };
             self.text(span, &format!("let {name}.pressed: N = {pressed};"));
             force = format!(" * {name}.pressed");
+        } else if let Some(pressed) = &axis.pressed {
+            self.text(span, &format!("let {name}.pressed: N = {pressed};"));
+            force = format!(" * {name}.pressed");
         } else if let (Some(_), Some(joint)) = (&friction.radius, &axis.joint) {
             self.text(span, &format!("let {name}.pressed: N = norm({joint}.force);"));
             force = format!(" * {name}.pressed");

@@ -8,8 +8,9 @@
 //! determine.
 
 use super::attachment::stiff;
+use super::shapes::CENTER;
 use super::{End, Expansion, MechanismFault, is_vector};
-use crate::source::ast::{Axis, Expression, ExpressionKind, Item, Joint, JointKind};
+use crate::source::ast::{Axis, Expression, ExpressionKind, Item, Joint, JointKind, PressLaw};
 use crate::source::clause::{Allowed, Clause, Given};
 
 impl JointKind {
@@ -55,7 +56,8 @@ impl Expansion<'_> {
             self.fault(name.span, &MechanismFault::SameAxes { name: name.text.clone() });
         }
         let Some((a, b)) = self.ends(name, &joint.ends) else { return };
-        if self.clauses(joint) {
+        let is_complete = self.clauses(joint);
+        if self.play_fits(joint) && is_complete {
             self.translations(joint, &a, &b);
             let has_moment = self.rotations(joint, &a, &b);
             self.draw_joint((name, joint.kind.to_string()), &joint.ends, (&a, &b), has_moment);
@@ -115,8 +117,73 @@ impl Expansion<'_> {
         complete
     }
 
+    /// A pin in a hole that is wider: along its axis held as others, across it pushed back where the play ends.
+    fn play(&mut self, joint: &Joint, (axis, clearance): (Axis, &Expression), a: &End, b: &End) {
+        let (name, span) = (&joint.name.text, joint.name.span);
+        let clause = Clause::new(format!("the clearance of joint `{name}`"), 1).allowed(Allowed::Positive);
+        self.bind(&format!("{name}.clearance"), "m", clearance, clause);
+        self.force_junction(span, name, (a, b), (a.arm_to(&b.position), b.arm.clone()));
+        let (letter, along) = (axis.letter(), format!("{}.{}_axis", a.axes, axis.letter()));
+        self.text(
+            span,
+            &format!(
+                "let {name}.gap: m = {} - {}; let {name}.{letter}_offset: m = dot({along}, {name}.gap);
+                 close {name} = {name}.gap - {along} * {name}.{letter}_offset; close {name} = {name}.{letter}_offset;
+                 1 {name}.{letter}: translation; MTF {name}.{letter}_axis(v) = dot({along}, v);
+                 {name}.slip -> {name}.{letter}_axis -> {name}.{letter};
+                 C {name}.{letter}_spring = {name}.stiffness at {name}.{letter}_offset;
+                 {name}.{letter} -> {name}.{letter}_spring;
+                 let {name}.eccentricity: m = sqrt(dot({name}.gap, {name}.gap) - pow({name}.{letter}_offset, 2)
+                     + pow({CENTER} * {name}.clearance, 2));
+                 let {name}.inward: 1 = ({along} * {name}.{letter}_offset - {name}.gap) / {name}.eccentricity;
+                 1 {name}.approach: translation; MTF {name}.approach_axis(v) = dot({name}.inward, v);
+                 {name}.slip -> {name}.approach_axis -> {name}.approach;",
+                b.position, a.position
+            ),
+        );
+        let law = PressLaw {
+            stiffness: joint.stiffness.clone(),
+            damping: joint.damping.clone(),
+            restitution: joint.restitution.clone(),
+            ..PressLaw::default()
+        };
+        self.press(&joint.name, &law, &format!("{name}.clearance - {name}.eccentricity"));
+    }
+
+    /// Reports a clearance or a restitution where there can be none.
+    fn play_fits(&mut self, joint: &Joint) -> bool {
+        let name = &joint.name.text;
+        let fault = |clause, why| MechanismFault::SuperfluousClause { word: "joint", name: name.clone(), clause, why };
+        let faults = self.faults.len();
+        if let Some(clearance) = &joint.clearance {
+            if joint.rigid {
+                self.fault(clearance.span, &fault("clearance", "a rigid joint has no play"));
+            } else if joint.kind.spin().is_none() || joint.kind.slide().is_some() {
+                self.fault(clearance.span, &fault("clearance", "only a revolute joint has a pin in a hole"));
+            }
+            for (clause, value) in [("stiffness", &joint.stiffness), ("damping", &joint.damping)] {
+                if let Some(value) = value.as_ref().filter(|value| is_vector(value)) {
+                    self.fault(value.span, &fault(clause, "with a `clearance` it is one number in all directions"));
+                }
+            }
+        }
+        match (&joint.restitution, &joint.clearance, &joint.damping) {
+            (Some(value), None, _) => self.fault(value.span, &fault("restitution", "it has no `clearance`")),
+            (Some(value), _, Some(_)) => self.fault(value.span, &fault("restitution", "it has a `damping`")),
+            (Some(value), Some(_), None) => {
+                let clause = Clause::new(format!("the restitution of joint `{name}`"), 1).allowed(Allowed::Part);
+                self.bind(&format!("{name}.restitution"), "1", value, clause);
+            }
+            (None, ..) => {}
+        }
+        self.faults.len() == faults
+    }
+
     fn translations(&mut self, joint: &Joint, a: &End, b: &End) {
         let (name, span) = (&joint.name.text, joint.name.span);
+        if let (Some(clearance), Some(axis)) = (&joint.clearance, joint.kind.spin()) {
+            return self.play(joint, (axis, clearance), a, b);
+        }
         let slide = joint.kind.slide();
         let has_axes = |value: &Option<Expression>| value.as_ref().is_some_and(is_vector);
         let per_axis = !joint.rigid && (has_axes(&joint.stiffness) || has_axes(&joint.damping));

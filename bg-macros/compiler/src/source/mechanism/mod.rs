@@ -1,9 +1,9 @@
 //! Mechanism words to bond-graph words.
 //!
 //! In: one `ast::Graph`. Out: one `ast::Graph` in which bodies, joints, springs, drives, contacts, frictions, stops,
-//! ground and gravity no longer occur. Every word stands for a fragment of the language itself, written below as its
-//! template; the user's expressions enter it as named `let`s, so that a fault in one of them is reported where the user
-//! wrote it.
+//! ground and gravity no longer occur; contacts are those along a line and those of shapes. Every word stands for a
+//! fragment of the language itself, written below as its template; the user's expressions enter it as named `let`s, so
+//! that a fault in one of them is reported where the user wrote it.
 
 mod attachment;
 mod axis;
@@ -14,6 +14,8 @@ mod friction;
 mod joint;
 mod orifice;
 mod part;
+mod press;
+mod shapes;
 mod stop;
 
 use std::collections::BTreeMap;
@@ -151,6 +153,7 @@ impl<'a> Expansion<'a> {
                 Item::Spring(spring) => self.spring(spring),
                 Item::Drive(drive) => self.drive(drive),
                 Item::Contact(contact) => self.contact(contact),
+                Item::ShapeContact(contact) => self.shape_contact(contact),
                 Item::Friction(friction) => self.friction(friction),
                 Item::Stop(stop) => self.stop(stop),
                 Item::Orifice(orifice) => self.orifice(orifice),
@@ -341,6 +344,7 @@ fn part_name(item: &Item) -> Option<&Name> {
         Item::Spring(spring) => Some(&spring.name),
         Item::Drive(drive) => Some(&drive.name),
         Item::Contact(contact) => Some(&contact.name),
+        Item::ShapeContact(contact) => Some(&contact.name),
         Item::Friction(friction) => Some(&friction.name),
         Item::Stop(stop) => Some(&stop.name),
         Item::Orifice(orifice) => Some(&orifice.name),

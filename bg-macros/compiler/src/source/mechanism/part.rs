@@ -39,6 +39,7 @@ fn part(item: &Item) -> Option<Part> {
         Item::Spring(spring) => ("spring".to_owned(), &spring.name),
         Item::Drive(drive) => ("drive".to_owned(), &drive.name),
         Item::Contact(contact) => ("contact".to_owned(), &contact.name),
+        Item::ShapeContact(contact) => ("contact".to_owned(), &contact.name),
         Item::Friction(friction) => ("friction".to_owned(), &friction.name),
         Item::Stop(stop) => ("stop".to_owned(), &stop.name),
         Item::Orifice(orifice) => ("orifice".to_owned(), &orifice.name),

@@ -9,7 +9,7 @@ use proc_macro2::Span;
 use crate::fault::Faults;
 use crate::source::ast::{ExpressionKind, Item, Name, Observation, Part};
 use crate::source::walk::{Met, each_name, of_observation, walk};
-use crate::source::words::{GROUND, QUANTITIES};
+use crate::source::words::{GROUND, QUANTITIES, table_called};
 
 /// A part, or a graph, without parts inside.
 #[derive(Clone, Debug, Default)]
@@ -111,7 +111,9 @@ fn rename(met: Met, path: &str, moved: &dyn Fn(&str) -> String, tables: &BTreeSe
             ExpressionKind::Name(name) if !variable.is_some_and(|variable| is_at(&name.text, variable)) => {
                 name.text = moved(&name.text);
             }
-            ExpressionKind::Call(name, _) if tables.contains(&name.text) => name.text = moved(&name.text),
+            ExpressionKind::Call(name, _) if tables.contains(table_called(&name.text).0) => {
+                name.text = moved(&name.text);
+            }
             _ => {}
         }),
     }

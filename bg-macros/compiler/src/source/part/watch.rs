@@ -105,6 +105,7 @@ fn of_item(item: &Item, path: &str, span: Span) -> Vec<Observation> {
         Item::Joint(joint) => (&joint.name, of_joint(joint)),
         Item::Spring(spring) => (&spring.name, vec!["force", "distance"]),
         Item::Contact(contact) => (&contact.name, vec!["force", "gap", "speed"]),
+        Item::ShapeContact(contact) => (&contact.name, vec!["force", "gap", "pressed"]),
         Item::Drive(drive) => (&drive.name, vec!["power"]),
         Item::Element(element) => (&element.name, of_element(element.kind)),
         Item::Junction(junction) => {

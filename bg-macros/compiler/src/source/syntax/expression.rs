@@ -203,12 +203,7 @@ impl Cursor<'_> {
     /// `if a < b { c } else { d }`
     fn choice(&mut self) -> Parsed<Tall> {
         let span = self.advance();
-        let left = self.binary(0)?;
-        let comparison = self.comparison()?;
-        let right = self.binary(0)?;
-        if let Some(operator) = self.condition_symbol() {
-            return Err(self.note(self.span(), &SyntaxFault::SecondComparison { operator }));
-        }
+        let (left, comparison, right) = self.compared()?;
         let then = self.block(Delimiter::Brace, "an operator or `}`")?;
         if self.eat_word("else").is_none() {
             if self.word().is_some_and(|word| near_miss(word, ["else"]).is_some()) {
@@ -229,6 +224,22 @@ impl Cursor<'_> {
             otherwise: otherwise.expression,
         };
         self.above(height, ExpressionKind::If(Box::new(choice)), span)
+    }
+
+    /// `a < b`
+    pub fn condition(&mut self) -> Parsed<(Expression, Comparison, Expression)> {
+        let (left, comparison, right) = self.compared()?;
+        Ok((left.expression, comparison, right.expression))
+    }
+
+    fn compared(&mut self) -> Parsed<(Tall, Comparison, Tall)> {
+        let left = self.binary(0)?;
+        let comparison = self.comparison()?;
+        let right = self.binary(0)?;
+        match self.condition_symbol() {
+            Some(operator) => Err(self.note(self.span(), &SyntaxFault::SecondComparison { operator })),
+            None => Ok((left, comparison, right)),
+        }
     }
 
     /// `<` and its like.

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::source::ast::{
     Axis, AxisLaw, Baumgarte, Contact, Drive, DriveKind, ElementKind, Ends, Expression, Gravity, Ground, Item, Joint,
-    JointKind, Name, Point, Spring,
+    JointKind, Name, Point, PressLaw, ShapeContact, Spring, Touching,
 };
 use crate::source::words::{AXES, DRIVES, value_of, word_of};
 
@@ -22,7 +22,7 @@ const GROUND: Place = Place { name: "`ground`", words: &["point"], list: false }
 /// The block of a joint.
 const JOINT: Place = Place {
     name: "a joint",
-    words: &["stiffness", "damping", "tilt stiffness", "tilt damping", "frame inertial"],
+    words: &["stiffness", "damping", "tilt stiffness", "tilt damping", "frame inertial", "clearance", "restitution"],
     list: false,
 };
 
@@ -34,6 +34,16 @@ const DRIVE: Place = Place { name: "a speed drive", words: &["stiffness", "dampi
 
 /// The block of a contact.
 const CONTACT: Place = Place { name: "a contact", words: &["x", "y", "z"], list: false };
+
+/// The block of a contact of shapes.
+const SHAPE_CONTACT: Place = Place {
+    name: "a contact of shapes",
+    words: &["stiffness", "exponent", "damping", "dissipation", "restitution", "rest below"],
+    list: false,
+};
+
+/// The shapes that touch.
+const SHAPES: &[&str] = &["circle", "hole", "sphere", "line", "plane", "profile"];
 
 /// Inside of `(a.P -> b.Q)`.
 const ENDS: Place = Place { name: "the parentheses", words: &[], list: false };
@@ -63,7 +73,7 @@ impl Cursor<'_> {
             "joint" => self.joint().map(Item::Joint),
             "spring" => self.spring().map(Item::Spring),
             "drive" => self.drive().map(Item::Drive),
-            "contact" => self.contact().map(Item::Contact),
+            "contact" => self.contact(),
             "friction" => self.friction().map(Item::Friction),
             "stop" => self.stop().map(Item::Stop),
             "orifice" => self.orifice().map(Item::Orifice),
@@ -160,6 +170,8 @@ impl Cursor<'_> {
             damping: None,
             tilt_stiffness: None,
             tilt_damping: None,
+            clearance: None,
+            restitution: None,
             inertial: false,
             rigid: false,
         };
@@ -179,6 +191,8 @@ impl Cursor<'_> {
                 ("damping", &mut joint.damping),
                 ("tilt stiffness", &mut joint.tilt_stiffness),
                 ("tilt damping", &mut joint.tilt_damping),
+                ("clearance", &mut joint.clearance),
+                ("restitution", &mut joint.restitution),
             ])
         });
         joint.inertial = inertial.is_some();
@@ -322,19 +336,57 @@ impl Cursor<'_> {
         });
     }
 
-    /// `contact NAME (a.P -> b.Q along x) { ... }`
-    fn contact(&mut self) -> Parsed<Contact> {
+    /// `contact NAME (a.P -> b.Q along x) { ... }`, `contact NAME (a.P circle E -> b.Q line x) { ... }`
+    fn contact(&mut self) -> Parsed<Item> {
         self.advance();
         let name = self.declared("the contact")?;
-        let mut inner = self.group(Delimiter::Parenthesis, "`(a.P -> b.Q along x)`", &ENDS)?;
-        let ends = inner.both_ends()?;
+        let mut inner =
+            self.group(Delimiter::Parenthesis, "`(a.P -> b.Q along x)` or `(a.P circle 0.1 -> b.Q line x)`", &ENDS)?;
+        let from = inner.name("the first end")?;
+        let first = inner.touching()?;
+        inner.expect("->")?;
+        let ends = Ends { from, to: inner.name("the second end")? };
+        let second = inner.touching()?;
+        if first.is_some() || second.is_some() {
+            inner.finish("`)`")?;
+            let shapes = [first, second].map(|shape| shape.unwrap_or(Touching::Point));
+            return Ok(Item::ShapeContact(self.shape_contact(name, ends, shapes)));
+        }
+        if inner.ended() {
+            return Err(inner.unexpected("`along x` or a shape such as `circle 0.1`"));
+        }
         let word = inner.expect_word("along")?;
         let along = inner.axis("along", word)?;
         inner.finish("`)`")?;
         let mut laws = Vec::new();
         let mut block = self.group(Delimiter::Brace, "`{ ... }`", &CONTACT)?;
         block.statements(|entry| entry.axis_laws(&mut laws));
-        Ok(Contact { name, ends, along, laws })
+        Ok(Item::Contact(Contact { name, ends, along, laws }))
+    }
+
+    /// `circle E`, `line x`, `profile TABLE`; none where there is no shape.
+    fn touching(&mut self) -> Parsed<Option<Touching>> {
+        let Some(word) = self.word().map(str::to_owned).filter(|word| word != "along") else { return Ok(None) };
+        if !SHAPES.contains(&word.as_str()) {
+            let fault = SyntaxFault::UnknownKind { what: "a shape", word, known: SHAPES };
+            return Err(self.note(self.span(), &fault));
+        }
+        let span = self.advance();
+        Ok(Some(match word.as_str() {
+            "circle" => Touching::Circle(self.expression()?),
+            "hole" => Touching::Hole(self.expression()?),
+            "sphere" => Touching::Sphere(self.expression()?),
+            "line" => Touching::Line(self.axis(&word, span)?),
+            "plane" => Touching::Plane(self.axis(&word, span)?),
+            _ => Touching::Profile(self.name("the table of the profile")?),
+        }))
+    }
+
+    /// `{ stiffness E; ... }` of a contact of shapes.
+    fn shape_contact(&mut self, name: Name, ends: Ends, shapes: [Touching; 2]) -> ShapeContact {
+        let mut contact = ShapeContact { name, ends, shapes, law: PressLaw::default() };
+        self.block_or_semicolon(&SHAPE_CONTACT, |entry| entry.setting(&mut contact.law.clauses_mut()));
+        contact
     }
 
     /// `y: C = E, R(v) = E;`

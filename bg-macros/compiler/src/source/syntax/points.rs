@@ -1,12 +1,14 @@
 //! Points of tables that stand in files of their own: `table curve: rpm -> N*m = "motor.csv";`.
 //!
-//! In: the tokens of a file, what reads another one. Out: the same tokens with the points in place of the file's name, each with
-//! the unit that the head of its column gives in brackets. Two columns, separated by commas; a head may be there.
+//! In: the tokens of a file, what reads another one. Out: the same tokens with the points in place of the file's name,
+//! each with the unit that the head of its column gives in brackets. Two columns, separated by commas; a head may be
+//! there. Of a table of two arguments the head is a word, with the unit of the first column in brackets, and the second
+//! arguments.
 
 use proc_macro2::{Delimiter, Group, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 
-/// Puts points in the places of the names of files after `table .. =`. What `read` says of a file without points stands at its
-/// name.
+/// Puts points in the places of the names of files after `table .. =`. What `read` says of a file without points stands
+/// at its name.
 pub(super) fn replaced(tokens: TokenStream, read: &mut dyn FnMut(&str, Span) -> Option<TokenStream>) -> TokenStream {
     let (mut is_table, mut is_value) = (false, false);
     let token = |token: TokenTree| {
@@ -44,10 +46,21 @@ pub(super) fn points(text: &str, span: Span) -> Result<TokenStream, String> {
         .comment(Some(b'#'))
         .from_reader(text.as_bytes());
     let (mut units, mut rows) = ([TokenStream::new(), TokenStream::new()], TokenStream::new());
+    let mut is_wide = false;
     for (index, record) in reader.records().enumerate() {
         let record = record.map_err(|error| error.to_string())?;
         let line = record.position().map_or(index as u64 + 1, csv::Position::line);
-        let [x, y] = record.iter().collect::<Vec<_>>()[..] else {
+        let cells: Vec<&str> = record.iter().collect();
+        if index == 0 && cells.len() > 2 && cells[0].parse::<f64>().is_err() {
+            (is_wide, units[0]) = (true, unit(cells[0], span)?);
+            rows.extend([wide_row(&cells[1..], &TokenStream::new(), span).ok_or_else(|| wrong(line))?, comma(span)]);
+            continue;
+        }
+        if is_wide {
+            rows.extend([wide_row(&cells, &units[0], span).ok_or_else(|| wrong(line))?, comma(span)]);
+            continue;
+        }
+        let [x, y] = cells[..] else {
             return Err(format!("line {line} has {} columns, not two", record.len()));
         };
         match [x, y].map(str::parse::<f64>) {
@@ -60,6 +73,22 @@ pub(super) fn points(text: &str, span: Span) -> Result<TokenStream, String> {
         }
     }
     if rows.is_empty() { Err("it has no points".to_owned()) } else { Ok(rows) }
+}
+
+/// What is wrong with a line of a table of two arguments.
+fn wrong(line: u64) -> String {
+    format!("line {line} is no row of numbers")
+}
+
+/// A row of a table of two arguments; none where it is not of numbers. The first one may have a unit.
+fn wide_row(cells: &[&str], first: &TokenStream, span: Span) -> Option<TokenTree> {
+    let mut row = TokenStream::new();
+    for (index, cell) in cells.iter().enumerate() {
+        let value = cell.parse::<f64>().ok().filter(|value| value.is_finite())?;
+        let none = TokenStream::new();
+        row.extend(number(value, if index == 0 { first } else { &none }, span).chain([comma(span)]));
+    }
+    Some(bracketed(row, span))
 }
 
 /// A number with its sign and its unit.
@@ -104,6 +133,13 @@ mod tests {
         assert_eq!(read("0, 12\n100,-1.5e2\n"), Ok("[0.0,12.0],[100.0,-150.0],".to_owned()));
         assert_eq!(read("speed [rpm],torque [N*m]\n# measured\n0,12\n"), Ok("[0.0rpm,12.0N*m],".to_owned()));
         assert_eq!(read("speed,torque\n0,12\n"), Ok("[0.0,12.0],".to_owned()));
+    }
+
+    #[test]
+    fn rows_of_a_wide_file_are_those_of_a_table_of_two_arguments() {
+        let text = "speed by voltage [rpm], 12, 24\n0, 1, 2\n-500, 3, -4.5\n";
+        assert_eq!(read(text), Ok("[12.0,24.0,],[0.0rpm,1.0,2.0,],[-500.0rpm,3.0,-4.5,],".to_owned()));
+        assert_eq!(read("n, 12, 24\n0, 1, two\n").unwrap_err(), "line 2 is no row of numbers");
     }
 
     #[test]

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::fault::near_miss;
 use crate::source::ast::{
-    Bound, Close, Direction, Element, ElementKind, Expression, ExpressionKind, Held, Input, Item, Junction,
-    JunctionKind, LawVariable, Let, Name, Parameter, State, Table, Track, TrackKind, Unit,
+    Bound, Choice, Close, Direction, Element, ElementKind, Expression, ExpressionKind, Held, Input, Item, Junction,
+    JunctionKind, LawVariable, Let, Memory, Name, Parameter, State, Table, Track, TrackKind, Unit,
 };
 use crate::source::words::{BETWEEN, BEYOND, ELEMENTS, ROLES, TRACKS, value_of};
 
@@ -33,7 +33,7 @@ const WORDS_OF_PART: &[&str] = {
 };
 
 /// The words of a graph.
-const WORDS: [&str; 41] = [
+const WORDS: [&str; 42] = [
     "param",
     "1",
     "R",
@@ -43,6 +43,7 @@ const WORDS: [&str; 41] = [
     "let",
     "table",
     "state",
+    "memory",
     "0",
     "Se",
     "Sf",
@@ -143,6 +144,7 @@ fn bond_graph_item(cursor: &mut Cursor, word: &str) -> Parsed<Item> {
         "let" => binding(cursor).map(Item::Let),
         "table" => table(cursor).map(Item::Table),
         "state" => state(cursor).map(Item::State),
+        "memory" => memory(cursor).map(Item::Memory),
         "close" => close(cursor).map(Item::Close),
         "observe" => cursor.observe().map(Item::Observe),
         "part" => cursor.part_use().map(Item::Use),
@@ -260,11 +262,28 @@ fn state(cursor: &mut Cursor) -> Parsed<State> {
     Ok(State { name, unit, rate, start })
 }
 
+/// `memory NAME: UNIT = E while E < E start E;`
+fn memory(cursor: &mut Cursor) -> Parsed<Memory> {
+    cursor.advance();
+    let name = cursor.declared("the memory")?;
+    let unit = declared_unit(cursor, "memory", &name)?;
+    cursor.expect("=")?;
+    let then = cursor.expression()?;
+    cursor.expect_word("while")?;
+    let (left, comparison, right) = cursor.condition()?;
+    let start = if cursor.eat_word("start").is_some() { Some(cursor.expression()?.in_unit(&unit)) } else { None };
+    cursor.end_statement(if start.is_some() { OPERATOR } else { "`start`" });
+    let kept = Memory::kept(&name);
+    let otherwise = Expression { span: kept.span, kind: ExpressionKind::Name(kept) };
+    Ok(Memory { following: Choice { comparison, left, right, then, otherwise }, name, unit, start })
+}
+
 /// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`
 fn table(cursor: &mut Cursor) -> Parsed<Table> {
     cursor.advance();
     let name = cursor.declared("the table")?;
     let argument = declared_unit(cursor, "table", &name)?;
+    let second = if cursor.eat(",").is_some() { Some(cursor.unit()?) } else { None };
     cursor.expect("->")?;
     let value = cursor.unit()?;
     cursor.expect("=")?;
@@ -281,13 +300,13 @@ fn table(cursor: &mut Cursor) -> Parsed<Table> {
         } else if let Some(given) = value_of(&BEYOND, word) {
             cursor.fill(&mut beyond, given, "word for what is beyond the points", span);
         } else {
-            return Err(cursor.unexpected("`straight`, `monotone`, `spline`, `held` or `continued`"));
+            return Err(cursor.unexpected("`straight`, `monotone`, `spline`, `held`, `continued` or `periodic`"));
         }
         cursor.advance();
     }
     cursor.end_statement("`,`");
     let (between, beyond) = (between.unwrap_or_default(), beyond.unwrap_or_default());
-    Ok(Table { name, argument, value, points, between, beyond })
+    Ok(Table { name, argument, second, value, points, between, beyond })
 }
 
 /// Whether a name is ahead that is no slip of a statement's word, and after it a symbol where `->` could be meant.

@@ -90,9 +90,9 @@ impl Signals<'_> {
             TermKind::Reference(Reference::Let(index)) => self.nature_of_let(*index),
             TermKind::Reference(_) | TermKind::Integral(_) => Nature { changes: true, is_partial: false },
             TermKind::Component(inner, _) | TermKind::Negate(inner) => self.nature(inner),
-            TermKind::Lookup(table, argument) => {
-                let argument = self.nature(argument);
-                if self.graph.tables[*table].is_everywhere() { argument } else { argument.partial() }
+            TermKind::Lookup(lookup, arguments) => {
+                let all = self.nature_of_all(arguments);
+                if self.graph.tables[lookup.table].is_everywhere() { all } else { all.partial() }
             }
             TermKind::Chain(first, rest) => rest.iter().fold(self.nature(first), |left, operation| {
                 let right = self.nature(&operation.operand);

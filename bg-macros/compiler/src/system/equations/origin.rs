@@ -21,12 +21,15 @@ pub enum Origin {
     Turn(usize),
     /// The angle or the travel of a step of a joint; the track of the orientation that it gives, the step.
     Hinge(usize, usize),
-    /// The speed of a step of a joint, in the place of a momentum; the track of the orientation that it turns, the step.
+    /// The speed of a step of a joint, in the place of a momentum; the track of the orientation that it turns, the
+    /// step.
     Speed(usize, usize),
     /// The displacement of a scalar 1-junction.
     Way(NodeId),
     /// The integral that an output asks for, or a state of the graph's own; its index.
     Integral(usize),
+    /// What a memory keeps; its index among the integrals.
+    Memory(usize),
 }
 
 /// The kind of a state.
@@ -53,7 +56,7 @@ impl Origin {
             Self::Orientation(..) => Kind::Orientation,
             Self::Angle(_) => Kind::Angle,
             Self::Turn(_) | Self::Hinge(..) | Self::Way(_) => Kind::Way,
-            Self::Integral(_) => Kind::Integral,
+            Self::Integral(_) | Self::Memory(_) => Kind::Integral,
         }
     }
 

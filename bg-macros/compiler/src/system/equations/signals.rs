@@ -3,7 +3,7 @@
 //! In: strokes. Out: component expressions, calculated when first asked for; a variable that needs itself is an unknown
 //! until all are known.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::dependent::{Dependent, Way, dependents, way};
 use super::fallible::Nature;
@@ -13,11 +13,11 @@ use super::memo::{Entry, Memo};
 use super::solving::Pivot;
 use super::unknowns::{Unknown, Unknowns};
 use super::{FallibleLaw, Gap, Holding, Impacts, Kind, Origin, Output, State, StateEquations, Switch, storage, text};
-use crate::expr::{Id, Pool, Symbol, magnitudes, substitute};
+use crate::expr::{Function, Id, Pool, Symbol, blended, magnitudes, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::units::Dimension;
 use crate::graph::{
-    BondGraph, BondId, CausalGraph, ElementKind, End, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
+    BondGraph, BondId, CausalGraph, ElementKind, End, Lookup, NodeId, NodeKind, Role, Shape, Storage, TrackKind,
 };
 use crate::system::Value;
 use crate::system::equations::solution::Solution;
@@ -33,6 +33,9 @@ pub(super) struct Place {
 
 /// The gap of a joint, with its unit and its components.
 pub(super) type Open = (String, String, Vec<Id>);
+
+/// What is added to a guard before a run, so that it is not zero: its square is a number.
+const BESIDE: f64 = 1e-150;
 
 /// The derivation in progress.
 pub(super) struct Signals<'a> {
@@ -64,7 +67,7 @@ pub(super) struct Signals<'a> {
     pub(super) pivots: Vec<Pivot>,
     pub(super) switches: Vec<Switch>,
     /// While the energy of a law is found: the tables that the law asks, with their arguments.
-    pub(super) asked: Option<Vec<(usize, Id)>>,
+    pub(super) asked: Option<Vec<(Lookup, Vec<Id>)>>,
     /// What is being evaluated, for the switches' names.
     pub(super) owner: String,
     pub(super) fallible: Vec<FallibleLaw>,
@@ -145,6 +148,7 @@ impl<'a> Signals<'a> {
         let holding = Holding { compliant: self.compliant_slips(&speeds), ..Holding::default() };
         let mut projections = self.projections();
         projections.extend(self.turn_projections());
+        projections.extend(self.memories());
         let reactions = self.reactions();
         let texts = text::equations(&self);
         if !self.faults.is_empty() {
@@ -246,7 +250,8 @@ impl<'a> Signals<'a> {
         for (index, integral) in self.graph.integrals.iter().enumerate() {
             let unit = integral.dimension.times(Dimension::SECOND).to_string();
             let name = integral.name.clone();
-            self.states.push(State { name, unit, origin: Origin::Integral(index), start: zero, rate: zero });
+            let origin = if integral.follows.is_some() { Origin::Memory(index) } else { Origin::Integral(index) };
+            self.states.push(State { name, unit, origin, start: zero, rate: zero });
         }
     }
 
@@ -411,6 +416,13 @@ impl<'a> Signals<'a> {
         outputs
     }
 
+    /// What memories become after a step: while the condition holds, the value that they follow at its end.
+    fn memories(&mut self) -> Vec<(usize, Id)> {
+        let graph = self.graph;
+        let followed = graph.integrals.iter().enumerate().filter_map(|(index, own)| Some((index, own.follows?)));
+        followed.map(|(index, of)| (self.first_integral + index, self.named_expression(of).0[0])).collect()
+    }
+
     fn integral_rates(&mut self) {
         let graph = self.graph;
         for (index, integral) in graph.integrals.iter().enumerate() {
@@ -420,15 +432,43 @@ impl<'a> Signals<'a> {
         }
     }
 
+    /// The guesses, over parameters; one that depends on the start pose takes that of the guesses before it.
     fn guesses(&mut self) -> Vec<Id> {
         let graph = self.graph;
-        graph.guesses.iter().map(|guess| self.evaluate(guess, None).0[0]).collect()
+        let mut guesses: Vec<Id> = Vec::new();
+        for guess in &graph.guesses {
+            let value = self.evaluate(guess, None).0[0];
+            let value = self.at_start(&[value])[0];
+            let known = |symbol| if let Symbol::Unknown(k) = symbol { guesses.get(k as usize).copied() } else { None };
+            guesses.push(substitute(&mut self.pool, &[value], &known)[0]);
+        }
+        guesses
     }
 
     /// Expressions at t = 0, over parameters and unknowns.
     pub(super) fn at_start(&mut self, of: &[Id]) -> Vec<Id> {
+        let of = self.without_switches(of);
         let start = |symbol: Symbol| symbol.as_state().map(|state| self.states[state].start);
-        substitute(&mut self.pool, of, &start)
+        substitute(&mut self.pool, &of, &start)
+    }
+
+    /// The same where the sign of each guard decides: what is known before a run has no branches. A branch counts once
+    /// where its guard has its sign, else zero times: atan2(0, g) is pi below zero and 0 above.
+    fn without_switches(&mut self, of: &[Id]) -> Vec<Id> {
+        let is_known = |switch: &u32| !self.switches[*switch as usize].remembers;
+        let switches: BTreeSet<u32> = self.pool.switches(of).into_iter().filter(is_known).collect();
+        let mut below: BTreeMap<u32, Id> = BTreeMap::new();
+        for switch in switches {
+            let guard = self.switches[switch as usize].guard;
+            let guard = self.without_switches(&[guard])[0];
+            let pool = &mut self.pool;
+            // An angle has no slope at zero.
+            let beside = pool.linear(BESIDE, &[(guard, 1.0)]);
+            let zero = pool.zero();
+            let angle = pool.call(Function::Atan2, &[zero, beside]);
+            below.insert(switch, pool.scale(1.0 / std::f64::consts::PI, angle));
+        }
+        if below.is_empty() { of.to_vec() } else { blended(&mut self.pool, of, &below) }
     }
 
     /// What is to be closed, over the states: joint, unit, components.
@@ -437,7 +477,8 @@ impl<'a> Signals<'a> {
         let mut open = Vec::new();
         for close in &graph.closes {
             let unit = if close.dimension == Dimension::NONE { "rad" } else { "m" };
-            open.push((graph.joint(close.joint).to_owned(), unit.to_owned(), self.evaluate(&close.gap, None).0));
+            let gap = self.evaluate(&close.gap, None).0;
+            open.push((graph.joint(close.joint).to_owned(), unit.to_owned(), self.without_switches(&gap)));
         }
         open.extend(self.gaps_of_sinks());
         open

@@ -20,9 +20,9 @@ impl Signals<'_> {
                 let inner = self.evaluate(inner, variable);
                 Value::scalar(inner.0[*index])
             }
-            TermKind::Lookup(table, argument) => {
-                let argument = self.evaluate(argument, variable).0[0];
-                Value::scalar(self.lookup(*table, argument, variable.is_some()))
+            TermKind::Lookup(lookup, arguments) => {
+                let arguments: Vec<Id> = arguments.iter().map(|part| self.evaluate(part, variable).0[0]).collect();
+                Value::scalar(self.lookup(*lookup, &arguments, variable.is_some()))
             }
             TermKind::Negate(inner) => {
                 let inner = self.evaluate(inner, variable);
@@ -98,7 +98,7 @@ impl Signals<'_> {
         }
     }
 
-    fn named_expression(&mut self, index: usize) -> Value {
+    pub(super) fn named_expression(&mut self, index: usize) -> Value {
         if let Some(value) = &self.memo.lets[index] {
             return value.clone();
         }

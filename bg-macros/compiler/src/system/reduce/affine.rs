@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use super::report::{Fate, Report, show};
 use crate::expr::{Id, Monomials, Symbol, monomials, same_polynomial};
-use crate::system::equations::{Kind, StateEquations};
+use crate::system::equations::{Kind, Origin, StateEquations};
 
 /// Coefficients below this part of the largest are rounding of the elimination.
 const ROUNDING: f64 = 1e-11;
@@ -57,7 +57,10 @@ fn combinations(equations: &mut StateEquations) -> BTreeMap<usize, Combination> 
         return recovered;
     }
     // Regressors first, candidates last, so that a candidate is reduced by all that may stay.
-    let mut order: Vec<usize> = (0..equations.states.len()).filter(|&state| kind(state) != Kind::Momentum).collect();
+    // What a memory keeps jumps: its rate says nothing of it.
+    let is_memory = |state: usize| matches!(equations.states[state].origin, Origin::Memory(_));
+    let is_smooth = |&state: &usize| kind(state) != Kind::Momentum && !is_memory(state);
+    let mut order: Vec<usize> = (0..equations.states.len()).filter(is_smooth).collect();
     order.sort_by_key(|&state| is_candidate(kind(state)));
     let mut basis: Vec<Row> = Vec::new();
     for state in order {

@@ -57,6 +57,7 @@ pub(super) fn of(pool: &mut Pool, value: &Value, allowed: Allowed) -> Vec<Condit
         Allowed::Determined => vec![determined(pool, value.0[0])],
         Allowed::Rotation => rotation(pool, value),
         Allowed::Fraction => fraction(pool, value.0[0]),
+        Allowed::Part => part(pool, value.0[0]),
         Allowed::Clearance => vec![clearance(pool, value.0[0])],
         Allowed::Inertia if is_matrix => [symmetric_positive(pool, value), triangle(pool, value)].concat(),
         Allowed::Inertia => {
@@ -118,6 +119,15 @@ fn fraction(pool: &mut Pool, value: Id) -> Vec<Condition> {
     let below = Condition { is_strict: false, is_shown: true, ..of_matrix(value, wanted, help) };
     let above = Condition { value: rest, is_shown: false, ..below.clone() };
     [below, above].map(|condition| Condition { fault: Kind::Stop, ..condition }).into()
+}
+
+/// Above 0 and below 1.
+fn part(pool: &mut Pool, value: Id) -> Vec<Condition> {
+    let (wanted, help) = ("must be above 0 and below 1", "give a value between; without a loss leave the clause out");
+    let rest = pool.linear(1.0, &[(value, -1.0)]);
+    let above = Condition { is_shown: true, ..of_matrix(value, wanted, help) };
+    let below = Condition { value: rest, is_shown: false, ..above.clone() };
+    [above, below].map(|condition| Condition { fault: Kind::Stop, ..condition }).into()
 }
 
 fn clearance(pool: &mut Pool, value: Id) -> Condition {

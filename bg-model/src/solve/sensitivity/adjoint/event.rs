@@ -7,7 +7,7 @@
 //! C_p - (w / v) g_p. Derivatives of guards and impacts are numbers with slopes along each state and each parameter:
 //! events are few.
 
-use super::super::jump::{guards, passed, struck};
+use super::super::jump::{guards, leads_on, passed, struck};
 use super::back::{add, dot};
 use super::lifted::Lifted;
 use crate::model::dynamics::Machine;
@@ -19,14 +19,15 @@ use crate::solve::simulation::Switching;
 /// parameters. `gained` is what the integral over the run gains for each s by which the event is later. None where no
 /// guard passes through zero with a speed.
 pub(super) fn back_over(lifted: &mut Lifted, event: &Switching, gained: f64, weights: &mut [f64]) -> Option<()> {
-    let Switching { before, after, jumps, .. } = event;
-    if !jumps && before.rate == after.rate && gained == 0.0 {
+    let Switching { before, after, .. } = event;
+    let leads_on = leads_on(lifted.plain(), event);
+    if !leads_on && before.rate == after.rate && gained == 0.0 {
         return Some(());
     }
     let given: Vec<Gradient> = before.x.iter().copied().map(Gradient::from_f64).collect();
     let (guard, speed) = passed(lifted.plain(), event)?;
     let mut by_instant = gained - dot(weights, after.rate.as_slice());
-    if *jumps {
+    if leads_on {
         let after = weights.to_vec();
         let weighted = |system: &dyn Machine<Gradient>, t: Gradient, x: &[Gradient]| {
             let struck = struck(system, event, t, x.to_vec());

@@ -111,7 +111,7 @@ fn unexpected_tokens_name_what_could_stand_there() {
         ),
         (
             "contact c (a -> b) { }",
-            "2:18 BG0102 found the end of the parentheses, expected `along` | write `along` here",
+            "2:18 BG0102 found the end of the parentheses, expected `along x` or a shape such as `circle 0.1` | write `along x` here",
         ),
         ("body b { sphere; }", "2:16 BG0102 found `;`, expected `radius` | write `radius` here"),
         (

@@ -1,0 +1,144 @@
+//! The law of what pushes and never pulls: of contacts of shapes and of joints with a clearance.
+//!
+//! In: the clauses of a [`PressLaw`]. Out: on a junction whose flow is the rate of a distance a C and, with damping, an
+//! R, which act where the distance is below zero. With the depth d and its rate v the force is
+//! - k d + c v with a `damping` c;
+//! - k d^n (1 + 3/2 a v) with a `dissipation` a (K. H. Hunt, F. R. E. Crossley, Coefficient of restitution interpreted
+//!   as damping in vibroimpact, ASME J. Applied Mechanics 42 (1975) 440-445);
+//! - k d^n (1 + x v / u) with a `restitution` e, where u is the speed of approach at the instant of touching (H. M.
+//!   Lankarani, P. E. Nikravesh, A contact force model with hysteresis damping for impact analysis of multibody
+//!   systems, ASME J. Mechanical Design 112 (1990) 369-376). They take x = 3 (1 - e^2) / 4, which gives back e near 1
+//!   only. Here x is the root above 0 of ln((1 + x) / (1 - e x)) = x (1 + e), with which two bodies alone part with e
+//!   times u whatever their masses are: the integral of v / (1 + x v / u) dv from u to -e u, which the depth gives,
+//!   vanishes.
+
+use super::{Expansion, MechanismFault};
+use crate::source::ast::{Expression, Name, PressLaw};
+use crate::source::clause::{Allowed, Clause, Given};
+
+/// The depth below which a law with an exponent is smooth, m.
+const NEAR: &str = "1e-10";
+
+/// The speed of approach below which what hits counts as that fast, unless it is given, m/s.
+const SLOW: &str = "0.01 m/s";
+
+/// Newton steps from x = (1 - e^2) / e on, after which rounding is left for e from 0.01 to 0.999.
+const STEPS: usize = 6;
+
+impl Expansion<'_> {
+    /// Binds the clauses of a law; false where one is missing.
+    pub(super) fn press_clauses(&mut self, word: &'static str, name: &Name, law: &PressLaw) -> bool {
+        let text = &name.text;
+        if law.stiffness.is_none() {
+            let (clause, why) = ("stiffness", "the shapes give way where they touch");
+            self.fault(name.span, &MechanismFault::MissingClause { word, name: text.clone(), clause, why });
+        }
+        let lossy = [("damping", &law.damping), ("dissipation", &law.dissipation), ("restitution", &law.restitution)];
+        let mut given = lossy.into_iter().filter_map(|(clause, value)| Some((clause, value.as_ref()?)));
+        given.next();
+        for (clause, value) in given {
+            let why = "it has another of `damping`, `dissipation` and `restitution`, and only one can be there";
+            self.fault(value.span, &MechanismFault::SuperfluousClause { word, name: text.clone(), clause, why });
+        }
+        if let (Some(rest), None) = (&law.rest, &law.restitution) {
+            let (clause, why) = ("rest below", "it has no `restitution`");
+            self.fault(rest.span, &MechanismFault::SuperfluousClause { word, name: text.clone(), clause, why });
+        }
+        let clauses = [
+            ("stiffness", "N/m", &law.stiffness, Allowed::NotNegative),
+            ("exponent", "1", &law.exponent, Allowed::Positive),
+            ("damping", "N*s/m", &law.damping, Allowed::NotNegative),
+            ("dissipation", "s/m", &law.dissipation, Allowed::NotNegative),
+            ("restitution", "1", &law.restitution, Allowed::Part),
+            ("rest", "m/s", &law.rest, Allowed::Positive),
+        ];
+        for (clause, unit, value, allowed) in clauses {
+            self.press_clause((word, name), (clause, unit), value.as_ref(), allowed);
+        }
+        law.stiffness.is_some()
+    }
+
+    fn press_clause(
+        &mut self,
+        (word, name): (&str, &Name),
+        (clause, unit): (&str, &str),
+        value: Option<&Expression>,
+        allowed: Allowed,
+    ) {
+        let Some(value) = value else { return };
+        let words = Clause::new(format!("the `{clause}` of {word} `{}`", name.text), 1);
+        self.bind(&format!("{}.{clause}", name.text), unit, value, words.given(Given::Constant).allowed(allowed));
+    }
+
+    /// The C and the R of a law whose clauses are bound: on the junction `NAME.approach`, whose flow is the rate of
+    /// `gap`.
+    pub(super) fn press(&mut self, name: &Name, law: &PressLaw, gap: &str) {
+        let (span, name) = (name.span, &name.text);
+        // k q (q^2 + s^2)^((n - 1) / 2): smooth where they touch, with its integral.
+        let power = |by: &str| format!("pow(q * q / (1 m * 1 m) + {NEAR} * {NEAR}, ({name}.exponent {by}) / 2)");
+        let (force, energy) = match &law.exponent {
+            None => (format!("{name}.stiffness * q"), format!("0.5 * {name}.stiffness * q * q")),
+            Some(_) => (
+                format!("{name}.stiffness * q * {}", power("- 1")),
+                format!(
+                    "{name}.stiffness * (1 m * 1 m) * ({} - pow({NEAR}, {name}.exponent + 1)) / ({name}.exponent + 1)",
+                    power("+ 1")
+                ),
+            ),
+        };
+        self.text(
+            span,
+            &format!(
+                "C {name}.spring(q) = if q < 0 {{ {force} }} else {{ 0 }} at {gap}
+                     energy if q < 0 {{ {energy} }} else {{ 0 }};
+                 {name}.approach -> {name}.spring;"
+            ),
+        );
+        let Some(damping) = self.damping_of(name, law, span) else {
+            return self.text(span, &format!("let {name}.pressed: N = -{name}.spring.effort;"));
+        };
+        self.text(
+            span,
+            &format!(
+                "MR {name}.damper(v) = if {name}.spring.q < 0 {{
+                     if {name}.spring.effort + {damping} * v > 0 {{ -{name}.spring.effort }} else {{ {damping} * v }}
+                 }} else {{ 0 }};
+                 {name}.approach -> {name}.damper;
+                 let {name}.pressed: N = -({name}.spring.effort + {name}.damper.effort);"
+            ),
+        );
+    }
+
+    /// The force over the speed of a law with damping, beside the depth's.
+    fn damping_of(&mut self, name: &str, law: &PressLaw, span: proc_macro2::Span) -> Option<String> {
+        if law.damping.is_some() {
+            return Some(format!("{name}.damping"));
+        }
+        if law.dissipation.is_some() {
+            return Some(format!("(-1.5 * {name}.dissipation * {name}.spring.effort)"));
+        }
+        law.restitution.as_ref()?;
+        // Newton's method for y = ln(1 - e x).
+        let mut steps = format!("let {name}.loss_0 = 2 * ln({name}.restitution);");
+        for step in 0..STEPS {
+            let (before, after) = (format!("{name}.loss_{step}"), format!("{name}.loss_{}", step + 1));
+            steps += &format!(
+                "let {before}.rest = exp({before}); let {before}.root = (1 - {before}.rest) / {name}.restitution;
+                 let {after} = {before} - ({before} - ln(1 + {before}.root) + {before}.root * (1 + {name}.restitution))
+                     / (1 - {before}.rest / {name}.restitution * ((1 + {name}.restitution) - 1 / (1 + {before}.root)));"
+            );
+        }
+        let slow = if law.rest.is_some() { format!("{name}.rest") } else { format!("({SLOW})") };
+        self.text(
+            span,
+            &format!(
+                "{steps}
+                 let {name}.loss: 1 = (1 - exp({name}.loss_{STEPS})) / {name}.restitution;
+                 memory {name}.meeting: 1 = -{name}.approach.flow / {slow} while {name}.spring.q > 0;
+                 let {name}.impact: m/s = {slow} * {name}.meeting;
+                 let {name}.hit: m/s = {slow} * sqrt(sqrt(sqrt(1 + pow({name}.meeting.kept, 8))));"
+            ),
+        );
+        Some(format!("(-{name}.loss * {name}.spring.effort / {name}.hit)"))
+    }
+}

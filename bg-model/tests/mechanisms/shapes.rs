@@ -1,0 +1,417 @@
+//! Contacts of shapes beside models that are written by hand: a cam from which its follower lifts off, restitutions, a
+//! slider-crank with a clearance, what rubs at a contact.
+
+use bg_model::dynamics::Dynamics;
+
+use super::hand::run;
+use super::text::{graphs, model, outputs};
+
+/// The outputs of a text after each of these times, s.
+fn after(text: &str, times: &[f64]) -> Vec<Vec<f64>> {
+    let graphs = graphs(text);
+    let model = model(&graphs, &graphs[0].name, &[]);
+    let start = bg_model::dynamics::Machine::start(&*model).unwrap_or_else(|error| panic!("{error}"));
+    let at = |&t: &f64| {
+        let finish = run(&*model, &start, t);
+        outputs(&*model, finish.t, finish.x.as_slice(), &finish.negative)
+    };
+    times.iter().map(at).collect()
+}
+
+/// A law of contact by hand: the force over depth, its rate and the speed of approach.
+type Law = fn(f64, f64, f64) -> f64;
+
+/// A system with one contact, whose last state is the speed of approach when the shapes last touched.
+struct Pressed<F: Fn(&[f64]) -> [f64; 2], R: Fn(&[f64], f64, &mut [f64])> {
+    states: usize,
+    /// Distance of the shapes and its rate.
+    gap: F,
+    /// The rates under a force.
+    rates: R,
+    law: Law,
+}
+
+impl<F: Fn(&[f64]) -> [f64; 2], R: Fn(&[f64], f64, &mut [f64])> Dynamics for Pressed<F, R> {
+    fn states(&self) -> usize {
+        self.states
+    }
+
+    fn switches(&self) -> usize {
+        1
+    }
+
+    fn guards(&self, _: f64, x: &[f64], _: &[bool], guards: &mut [f64]) {
+        guards[0] = (self.gap)(x)[0];
+    }
+
+    fn rate(&self, _: f64, x: &[f64], negative: &[bool], dx: &mut [f64]) {
+        let [gap, rate] = (self.gap)(x);
+        let last = self.states - 1;
+        let force = if negative[0] { (self.law)(-gap, -rate, x[last]).max(0.0) } else { 0.0 };
+        (self.rates)(x, force, dx);
+        dx[last] = 0.0;
+    }
+
+    fn project(&self, _: f64, negative: &[bool], x: &mut [f64]) {
+        if !negative[0] {
+            x[self.states - 1] = -(self.gap)(x)[1];
+        }
+    }
+}
+
+/// An eccentric disc turns under a roller of 10 mm on a follower, which gravity and a spring hold down.
+const RADIUS: f64 = 0.03;
+const OFF: f64 = 0.002;
+const ROLLER: f64 = 0.01;
+
+/// Angle of the disc, height of the follower, force between them at these times.
+fn disc_by_hand(is_flat: bool, times: &[f64]) -> Vec<[f64; 3]> {
+    let (inertia, mass) = (1e-3, 0.3);
+    // Direction from the disc's centre to the roller's, and distance of the shapes.
+    let meet = move |x: &[f64]| {
+        let center = [OFF * x[0].cos(), OFF * x[0].sin()];
+        if is_flat {
+            return (center, [0.0, 1.0], x[2] - center[1] - RADIUS);
+        }
+        let way = [-center[0], x[2] - center[1]];
+        let distance = way[0].hypot(way[1]);
+        (center, [way[0] / distance, way[1] / distance], distance - RADIUS - ROLLER)
+    };
+    let gap = move |x: &[f64]| {
+        let (center, n, gap) = meet(x);
+        let velocity = [center[1] * x[1], x[3] - center[0] * x[1]];
+        [gap, n[0] * velocity[0] + n[1] * velocity[1]]
+    };
+    let rates = move |x: &[f64], force: f64, dx: &mut [f64]| {
+        let (center, n, _) = meet(x);
+        let torque = -force * (center[0] * n[1] - center[1] * n[0]);
+        dx[..4].copy_from_slice(&[
+            x[1],
+            torque / inertia,
+            x[3],
+            force * n[1] / mass - 9.81 - 40.0 * (x[2] - 0.03) / mass,
+        ]);
+    };
+    let law: Law = |depth, rate, _| 1e6 * depth * (1.0 + 1.5 * 0.2 * rate);
+    let system = Pressed { states: 5, gap, rates, law };
+    let height = RADIUS + if is_flat { 0.0 } else { ROLLER };
+    let force = |x: &[f64]| {
+        let [gap, rate] = gap(x);
+        if gap < 0.0 { law(-gap, -rate, 0.0) } else { 0.0 }
+    };
+    let at = |&t: &f64| {
+        let x = run(&system, &[0.0, 100.0, height, 0.2, 0.0], t).x;
+        [x[0], x[2], force(x.as_slice())]
+    };
+    times.iter().map(at).collect()
+}
+
+/// The same as a text; `disc` and `follower` are the shapes.
+fn disc(table: &str, contact: &str) -> String {
+    format!(
+        "graph Disc {{
+            {table}
+            gravity [0, -9.81, 0];
+            ground {{ point O = [0, 0, 0]; point foot = [0, -0.97, 0]; }}
+            body disc {{ mass 1; inertia [1, 1, 1e-3]; point middle = [0.002, 0, 0]; start spin [0, 0, 100]; }}
+            body follower {{ mass 0.3; inertia [1e-4, 1e-4, 1e-4]; start at [0, HEIGHT, 0]; start velocity [0, 0.2, 0]; }}
+            joint shaft: revolute z (ground.O -> disc) {{ rigid; }}
+            joint guide: prismatic y (ground.O -> follower) {{ rigid; }}
+            spring back (ground.foot -> follower) {{ stiffness 40; length 1; }}
+            contact tip ({contact}) {{ stiffness 1e6; dissipation 0.2; }}
+            observe {{ angle: rad = shaft.angle; lift: m = follower.position.y; force: N = tip.pressed; gap: m = tip.gap;
+                total: J = stored_energy + integral(dissipated_power) - integral(supplied_power) }}
+        }}"
+    )
+}
+
+/// Points of the disc's outline by the angle about the shaft.
+fn outline(count: u32) -> String {
+    let radius = |k: u32| {
+        let angle = std::f64::consts::TAU * f64::from(k % count) / f64::from(count);
+        OFF * angle.cos() + (RADIUS * RADIUS - (OFF * angle.sin()).powi(2)).sqrt()
+    };
+    let point = |k: u32| format!("[{:?}, {:?}]", 360.0 * f64::from(k) / f64::from(count), radius(k));
+    let points: Vec<String> = (0..=count).map(point).collect();
+    format!("table outline: deg -> m = [{}], spline, periodic;", points.join(", "))
+}
+
+const TIMES: [f64; 3] = [0.004, 0.02, 0.05];
+
+#[test]
+fn a_roller_lifts_off_an_eccentric_disc() {
+    let expected = disc_by_hand(false, &TIMES);
+    // It does so, comes back and is pressed again.
+    assert!(expected.iter().any(|at| at[2] == 0.0) && expected.iter().any(|at| at[2] > 1.0), "{expected:?}");
+    let text = disc("", "disc.middle circle 0.03 -> follower circle 0.01").replace("HEIGHT", "0.04");
+    let found = after(&text, &TIMES);
+    for (found, expected) in found.iter().zip(&expected) {
+        let apart = [found[0] - expected[0], found[1] - expected[1], 1e-6 * (found[2] - expected[2])];
+        assert!(apart.iter().all(|apart| apart.abs() < 1e-10), "{found:?} {expected:?}");
+    }
+    // The other way round.
+    let text = disc("", "follower circle 0.01 -> disc.middle circle 0.03").replace("HEIGHT", "0.04");
+    let swapped = after(&text, &TIMES[2..]);
+    assert!((swapped[0][1] - found[2][1]).abs() < 1e-12 && (swapped[0][2] - found[2][2]).abs() < 1e-6);
+}
+
+/// How far a follower on a profile through so many points of the disc is from one on the disc, m; a flat face looks
+/// down.
+fn error_of_profile(is_flat: bool, shapes: &str, count: u32) -> f64 {
+    let height = if is_flat { "0.03" } else { "0.04" };
+    let face = "point face = [0, 0, 0] turned rotation_z(3.141592653589793); start at [0,";
+    let text = disc(&outline(count), shapes).replace("HEIGHT", height).replace("start at [0,", face);
+    let found = after(&text, &[&[0.0][..], &TIMES].concat());
+    let expected = disc_by_hand(is_flat, &TIMES);
+    let apart = found[1..].iter().zip(&expected).map(|(at, expected)| {
+        // No truncation of the place of contact costs energy.
+        assert!((at[4] - found[0][4]).abs() < 1e-9, "{at:?}");
+        (at[1] - expected[1]).abs().max(OFF * (at[0] - expected[0]).abs())
+    });
+    apart.fold(0.0, f64::max)
+}
+
+#[test]
+fn a_profile_through_points_of_a_disc_is_the_disc() {
+    let [coarse, fine] =
+        [18, 72].map(|count| error_of_profile(false, "disc profile outline -> follower circle 0.01", count));
+    assert!(fine < 1e-8 && fine < coarse / 100.0, "{coarse:e} m, {fine:e} m");
+    let swapped = error_of_profile(false, "follower circle 0.01 -> disc profile outline", 18);
+    assert!((swapped - coarse).abs() < 1e-10, "{swapped:e} m, {coarse:e} m");
+}
+
+#[test]
+fn a_flat_follower_on_a_profile_is_one_on_the_disc() {
+    let [coarse, fine] =
+        [18, 72].map(|count| error_of_profile(true, "disc profile outline -> follower.face line x", count));
+    assert!(fine < 1e-8 && fine < coarse / 100.0, "{coarse:e} m, {fine:e} m");
+    let swapped = error_of_profile(true, "follower.face line x -> disc profile outline", 18);
+    assert!((swapped - coarse).abs() < 1e-10, "{swapped:e} m, {coarse:e} m");
+}
+
+#[test]
+fn what_hits_parts_with_its_restitution() {
+    let graph = |shapes: &str, law: &str| {
+        format!(
+            "graph Ball {{
+                param e: 1 = 0.5;
+                ground {{ point O = [0, 0, 0]; }}
+                body wall {{ mass 0.7; inertia [1e-3, 1e-3, 1e-3]; start velocity [0, 0.4, 0]; }}
+                body ball {{ mass 0.5; inertia [1e-3, 1e-3, 1e-3]; start at [0, 0.3, 0]; start velocity [0, -1.2, 0]; }}
+                contact hit ({shapes}) {{ stiffness 1e6; restitution e; {law} }}
+                observe {{ apart: m/s = ball.velocity.y - wall.velocity.y; gap: m = hit.gap;
+                    momentum: N*s = ball.momentum.y + wall.momentum.y; energy: J = stored_energy; lost: J = integral(hit.damper.power) }}
+            }}"
+        )
+    };
+    let pairs = [
+        ("wall circle 0.1 -> ball circle 0.1", ""),
+        ("wall line x -> ball circle 0.1", "exponent 1.5;"),
+        ("wall sphere 0.1 -> ball sphere 0.05", "exponent 1.5;"),
+        ("ball sphere 0.1 -> wall plane y", "exponent 2.5;"),
+    ];
+    for (shapes, law) in pairs {
+        let graphs = graphs(&graph(shapes, law));
+        for tenth in 1..10 {
+            let restitution = f64::from(tenth) / 10.0;
+            let ball = model(&graphs, "Ball", &[("e", restitution)]);
+            let start = bg_model::dynamics::Machine::start(&*ball).expect("a start");
+            let finish = run(&*ball, &start, 0.4);
+            let found = outputs(&*ball, finish.t, finish.x.as_slice(), &finish.negative);
+            let [apart, gap, momentum, energy, lost] = found[..] else { panic!("five outputs") };
+            assert!(gap > 0.0 && finish.statistics.events >= 2, "{found:?}");
+            assert!((apart / 1.6 - restitution).abs() < 1e-8, "{shapes}: {} for {restitution}", apart / 1.6);
+            assert!((momentum + 0.32).abs() < 1e-12 && (energy + lost - 0.416).abs() < 1e-9, "{found:?}");
+        }
+    }
+}
+
+/// Crank, rod and slider in the plane, with a pin in a hole of 0.5 mm play at the slider. Dimensions, masses and law as
+/// in P. Flores, J. Ambrosio, J. C. P. Claro, H. M. Lankarani, Influence of the contact-impact force model on the
+/// dynamic response of multi-body systems, Proc. IMechE K 220 (2006) 21-34; here the crank is free, with a flywheel.
+const CRANK: f64 = 0.05;
+const ROD: f64 = 0.12;
+const PLAY: f64 = 5e-4;
+const FLYWHEEL: f64 = 0.1;
+
+fn slider_by_hand(law: Law, t_end: f64) -> Vec<f64> {
+    let (rod, slider, about) = (0.21, 0.14, 2.5e-4);
+    // States: angles of crank and rod, place of the slider, their rates, the speed of approach.
+    let pin = |x: &[f64]| {
+        let ([a, b], [v, w]) = ([x[0], x[1]], [x[3], x[4]]);
+        let place = [CRANK * a.cos() + ROD * b.cos(), CRANK * a.sin() + ROD * b.sin()];
+        let velocity = [-CRANK * a.sin() * v - ROD * b.sin() * w, CRANK * a.cos() * v + ROD * b.cos() * w];
+        ([x[2] - place[0], -place[1]], [x[5] - velocity[0], -velocity[1]])
+    };
+    let gap = move |x: &[f64]| {
+        let (d, v) = pin(x);
+        let distance = d[0].hypot(d[1]).max(1e-12);
+        [PLAY - distance, -(d[0] * v[0] + d[1] * v[1]) / distance]
+    };
+    let rates = move |x: &[f64], force: f64, dx: &mut [f64]| {
+        let (d, _) = pin(x);
+        let distance = d[0].hypot(d[1]).max(1e-12);
+        // On the rod.
+        let push = [force * d[0] / distance, force * d[1] / distance];
+        let ([a, b], [v, w]) = ([x[0], x[1]], [x[3], x[4]]);
+        let coupling = rod * CRANK * ROD / 2.0;
+        let (m11, m12, m22) = (FLYWHEEL + rod * CRANK * CRANK, coupling * (a - b).cos(), rod * ROD * ROD / 4.0 + about);
+        let moment = |length: f64, angle: f64| length * (angle.cos() * push[1] - angle.sin() * push[0]);
+        let right =
+            [moment(CRANK, a) - coupling * (a - b).sin() * w * w, moment(ROD, b) + coupling * (a - b).sin() * v * v];
+        let determinant = m11 * m22 - m12 * m12;
+        dx[..6].copy_from_slice(&[
+            v,
+            w,
+            x[5],
+            (m22 * right[0] - m12 * right[1]) / determinant,
+            (m11 * right[1] - m12 * right[0]) / determinant,
+            -push[0] / slider,
+        ]);
+    };
+    let system = Pressed { states: 7, gap, rates, law };
+    let speed = 5000.0 * std::f64::consts::PI / 30.0;
+    // At the dead centre the rod turns back and the slider stands.
+    let start = [0.0, 0.0, CRANK + ROD, speed, -speed * CRANK / ROD, 0.0, 0.0];
+    run(&system, &start, t_end).x.as_slice().to_vec()
+}
+
+fn slider(joint: &str) -> String {
+    format!(
+        "graph Slider {{
+            ground {{ point O = [0, 0, 0]; }}
+            body crank {{ mass 1; inertia [0.1, 0.1, 0.1]; point A = [0.05, 0, 0]; start spin [0, 0, 5000 rpm]; }}
+            body rod {{ mass 0.21; inertia [2.5e-4, 2.5e-4, 2.5e-4]; point A = [-0.06, 0, 0]; point B = [0.06, 0, 0];
+                start A at [0.05, 0, 0]; start spin [0, 0, -(5000 rpm) * 0.05 / 0.12];
+                start velocity [0, (5000 rpm) * (0.05 - 0.06 * 0.05 / 0.12), 0]; }}
+            body slider {{ mass 0.14; inertia [1e-4, 1e-4, 1e-4]; start at [0.17, 0, 0]; }}
+            joint main: revolute z (ground.O -> crank) {{ rigid; }}
+            joint big_end: revolute z (crank.A -> rod.A) {{ rigid; }}
+            joint guide: prismatic x (ground.O -> slider) {{ rigid; }}
+            {joint}
+            observe {{ crank: rad = main.angle; rod: rad = rod.angle; place: m = guide.travel; speed: m/s = slider.velocity.x }}
+        }}"
+    )
+}
+
+#[test]
+fn a_slider_crank_rattles_in_the_play_of_its_pin() {
+    // 6.61e10 N/m^1.5 are two steel cylinders of 10 and 9.5 mm as in the paper.
+    let law: Law = |depth, rate, approach| {
+        // x = 0.16648195068531.. for e = 0.9.
+        6.61e10 * depth.powf(1.5) * (1.0 + 0.166_481_950_685_31 * rate / approach)
+    };
+    let contact =
+        "contact pin (slider hole 10 mm -> rod.B circle 9.5 mm) { stiffness 6.61e10; exponent 1.5; restitution 0.9; }";
+    for t_end in [0.002, 0.004, 0.006] {
+        let expected = slider_by_hand(law, t_end);
+        let found = after(&slider(contact), &[t_end]).remove(0);
+        let expected = [expected[0], expected[1], expected[2], expected[5]];
+        let sizes = [1.0, 1.0, 0.1, 10.0];
+        for ((found, expected), size) in found.iter().zip(expected).zip(sizes) {
+            assert!((found - expected).abs() < 1e-7 * size, "{t_end} s: {found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_clearance_is_a_pin_in_a_hole() {
+    let law: Law = |depth, rate, _| 2e7 * depth + 300.0 * rate;
+    let pin =
+        "joint pin: revolute z (slider -> rod.B) { clearance 0.5 mm; stiffness 2e7; damping 300; tilt stiffness 0; }";
+    let expected = slider_by_hand(law, 0.006);
+    let found = after(&slider(pin), &[0.006]).remove(0);
+    for (found, expected) in found.iter().zip([expected[0], expected[1], expected[2], expected[5]]) {
+        assert!((found - expected).abs() < 1e-7, "{found} {expected}");
+    }
+}
+
+#[test]
+fn what_slides_on_an_incline_rubs_and_sticks() {
+    // A disc that rolls or slips down an incline: with f = m g cos(a) mu above m g sin(a) / 3 it rolls.
+    let graph = |friction: f64| {
+        format!(
+            "graph Incline {{
+                gravity [0, -9.81, 0];
+                ground {{ point foot = [0, 0, 0] turned rotation_z(-0.4); }}
+                body disc {{ mass 2; inertia [1, 1, 0.01]; start at [0.1 * sin(0.4), 0.1 * cos(0.4), 0]; }}
+                contact floor (ground.foot line x -> disc circle 0.1) {{ stiffness 1e5; damping 2 * sqrt(1e5 * 2); }}
+                friction rub on floor {{ coulomb {friction:?}; }}
+                observe {{ way: m = dot([cos(0.4), -sin(0.4), 0], disc.position); spin: rad/s = disc.angular_velocity.z; pressed: N = floor.pressed }}
+            }}"
+        )
+    };
+    let (g, t): (f64, f64) = (9.81, 0.8);
+    let settled = 2.0 * g * 0.4_f64.cos();
+    let [rolling, slipping] = [0.3, 0.05].map(|friction| after(&graph(friction), &[t]).remove(0));
+    assert!((rolling[2] - settled).abs() < 1e-6 && (slipping[2] - settled).abs() < 1e-6, "{rolling:?}");
+    // What presses swings in at first: rolling does not feel it, slipping by the impulse, which is that of the weight
+    // but for the speed of sinking in, which has gone.
+    let acceleration = g * 0.4_f64.sin() / 1.5;
+    assert!((rolling[1] + acceleration * t / 0.1).abs() < 1e-3, "{rolling:?}");
+    let speed = g * (0.4_f64.sin() - 0.05 * 0.4_f64.cos()) * t;
+    assert!((slipping[1] + 0.05 * settled * 0.1 / 0.01 * t).abs() < 1e-6, "{slipping:?}");
+    assert!((slipping[0] - 0.5 * speed * t).abs() < 1e-4, "{slipping:?}");
+}
+
+#[test]
+fn a_memory_keeps_what_it_followed() {
+    let text = "graph Kept {
+        1 slide: translation; I block = 1 start 2; C spring = 9 N/m; slide -> block; slide -> spring;
+        memory fastest: m/s = slide.flow while spring.q < 0.3 start 5;
+        observe { place: m = spring.q; speed: m/s = slide.flow; fastest }
+    }";
+    // 2 cos(3 t); 0.3 m is reached at sin(3 t) = 0.45 and left again with the opposite speed.
+    let at = |t: f64| after(text, &[t]).remove(0);
+    assert!((at(0.1)[2] - 2.0 * 0.3_f64.cos()).abs() < 1e-9);
+    let kept = 2.0 * (1.0 - 0.45_f64 * 0.45).sqrt();
+    assert!((at(0.5)[2] - kept).abs() < 1e-9 && (at(0.8)[2] - kept).abs() < 1e-9, "{:?} {kept}", at(0.5));
+    assert!((at(1.0)[2] - 2.0 * 3.0_f64.cos()).abs() < 1e-9);
+}
+
+#[test]
+fn scenes_in_the_plane_touch_as_the_graph_does() {
+    let scene = "scene Flat { observe { angle: rad = shaft.angle; lift: m = follower.position.y; force: N = tip.pressed } expect planar; } }";
+    for (law, shapes) in [
+        ("dissipation 0.2;", "disc.middle circle 0.03 -> follower circle 0.01"),
+        ("restitution 0.6;", "disc.middle circle 0.03 -> follower circle 0.01"),
+        ("restitution 0.6;", "disc profile outline -> follower circle 0.01"),
+    ] {
+        let text = disc(&outline(12), shapes).replace("HEIGHT", "0.0401").replace("dissipation 0.2;", law);
+        let text = format!("{}{scene}", text.trim_end().strip_suffix('}').expect("a graph"));
+        let graphs = graphs(&text);
+        let [whole, flat] = ["Disc", "Flat"].map(|name| model(&graphs, name, &[]));
+        assert!(flat.states() < 20 && whole.states() > 36, "{} {}", flat.states(), whole.states());
+        for t in TIMES {
+            let [whole, flat] = [&whole, &flat].map(|model| {
+                let start = bg_model::dynamics::Machine::start(&**model).expect("a start");
+                let finish = run(&**model, &start, t);
+                outputs(&**model, finish.t, finish.x.as_slice(), &finish.negative)
+            });
+            let apart = [whole[0] - flat[0], whole[1] - flat[1], 1e-6 * (whole[2] - flat[2])];
+            assert!(apart.iter().all(|apart| apart.abs() < 1e-9), "{shapes} {law}: {whole:?} {flat:?}");
+        }
+    }
+}
+
+#[test]
+fn a_memory_that_leads_out_of_its_branch_is_a_hysteresis() {
+    let text = "graph Tank {
+        memory running: 1 = if tank.effort < 1.5 bar { 1 } else { 0 } while abs(tank.effort - 1.5 bar) > 0.3 bar;
+        MSf pump = running * 1 l/s; 0 tank: hydraulic; C water = 1e-7 m^3/Pa; R drain = 5e8 Pa*s/m^3; pump -> tank -> water; tank -> drain;
+        observe { pressure: bar = tank.effort; running }
+    }";
+    // Time constant 50 s; up towards 5 bar, down towards 0.
+    let rise = |from: f64, to: f64| 50.0 * ((5.0 - from) / (5.0 - to)).ln();
+    let (first, up, down) = (rise(0.0, 1.8), rise(1.2, 1.8), 50.0 * (1.8_f64 / 1.2).ln());
+    for (turns, part) in [(0.0, 0.3), (0.0, 0.7), (3.0, 0.3), (3.0, 0.9)] {
+        let since = (up + down) * part;
+        let (pressure, running) = if since < down {
+            (1.8 * (-since / 50.0).exp(), 0.0)
+        } else {
+            (5.0 - 3.8 * (-(since - down) / 50.0).exp(), 1.0)
+        };
+        let found = after(text, &[first + turns * (up + down) + since]).remove(0);
+        assert!((found[0] - pressure).abs() < 1e-9 && found[1] == running, "{found:?} {pressure} {running}");
+    }
+}
