@@ -136,6 +136,10 @@ mod tests {
         assert!(
             elastic.contains("part Teeth") && elastic.contains("part StickingLoss") && !elastic.contains("Planetary")
         );
+        // A fault of syntax brings no more of it.
+        let graph = |watched: &str| format!("use gears; graph G {{ part p: GearPair; observe {{ {watched} }} }}");
+        let parts = |watched: &str| tokens(&graph(watched)).matches("part ").count();
+        assert_eq!((parts("p."), parts("p.torque")), (2, 2));
         // Nothing is done to a call that uses none.
         let own = "pub graph G { param a : m = 1 ; }";
         assert_eq!(tokens(own), own.parse::<proc_macro2::TokenStream>().expect("tokens").to_string());

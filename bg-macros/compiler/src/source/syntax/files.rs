@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, LexError, Span, TokenStream, TokenTree};
 
-use super::{parse, points};
+use super::{parse_leniently, points};
 use crate::fault::{Explain, Fault, Faults, near_miss};
 use crate::source::ast::{PartPath, Source, used_parts};
 use crate::source::library;
@@ -219,8 +219,13 @@ struct Known {
 }
 
 impl Known {
-    fn source(&self) -> Result<Source, Faults> {
-        if self.own.is_empty() { Ok(Source::default()) } else { parse(self.own.iter().cloned().collect()) }
+    /// What could be read of it, and whether that is all.
+    fn source(&self) -> (Source, bool) {
+        if self.own.is_empty() {
+            return (Source::default(), true);
+        }
+        let (source, faults) = parse_leniently(self.own.iter().cloned().collect());
+        (source, faults.is_empty())
     }
 }
 
@@ -365,12 +370,13 @@ impl<'o> Gathering<'o> {
             self.gathered.tokens = own(&self);
             return self.gathered;
         }
+        let (sources, are_whole): (Vec<Source>, Vec<bool>) = self.known.iter().map(Known::source).unzip();
         // Of files with faults of syntax not all parts are known.
-        let read: Result<Vec<Source>, _> = self.known.iter().map(Known::source).collect();
-        if let Ok(sources) = read {
+        if are_whole.iter().all(|is_whole| *is_whole) {
             self.find_parts(&sources);
-            self.leave_what_nobody_uses(&sources);
         }
+        // An editor compares a text with the same one and a fault at the caret: the library's part in both is one.
+        self.leave_what_nobody_uses(&sources);
         self.gathered.tokens = own(&self);
         self.gathered
     }
@@ -520,6 +526,7 @@ fn is_word(tree: &TokenTree, word: &str) -> bool {
 mod tests {
     use super::*;
     use crate::pipeline;
+    use crate::source::syntax::parse;
 
     const SHAFT: &str = "pub part Shaft { port end: rotation; I wheel = 2; end -> wheel; }";
 
