@@ -63,8 +63,8 @@ const SHOWN: [(&str, &[&str]); 13] = [
 
 /// What is offered at the bar in place of a piece of text: all of it, or some where there is more to see.
 const OFFERED: [(&str, &str, &[&str]); 7] = [
-    ("pin./*force*/force.x", "pin.|", &["force", "moment", "gap", "angle", "speed"]),
-    ("pin./*force*/force.x", "pin.fo|", &["force", "moment", "gap", "angle", "speed"]),
+    ("pin./*force*/force.x", "pin.|", &["force", "moment", "gap", "angle", "direction", "speed"]),
+    ("pin./*force*/force.x", "pin.fo|", &["force", "moment", "gap", "angle", "direction", "speed"]),
     ("pin./*force*/force.x", "pin.force.|", &["x", "y", "z"]),
     ("left./*way in observe*/way;", "left.|;", &["rate", "foot", "ground", "knee", "way"]),
     ("pair./*torque in observe*/torque;", "pair.|;", &["ratio", "first", "second", "mesh", "torque"]),

@@ -221,7 +221,7 @@ impl Checker<'_, '_> {
             }
             TermKind::Guess(index) => {
                 let guess = self.types.graph.guesses[*index].clone();
-                (Shape::Scalar, self.shaped("guess", &guess, Shape::Scalar))
+                self.shaped("guess", &guess, Shape::Scalar)
             }
             TermKind::Integral(index) => {
                 let integrand = self.types.graph.integrals[*index].value.clone();
@@ -344,17 +344,17 @@ impl Checker<'_, '_> {
     }
 
     fn argument(&mut self, builtin: Builtin, argument: &Term, expected: Shape) -> Quantity {
-        self.shaped(builtin.name(), argument, expected)
+        self.shaped(builtin.name(), argument, expected).1
     }
 
-    /// The unit of the argument of a function of this name, which has this shape.
-    fn shaped(&mut self, name: &str, argument: &Term, expected: Shape) -> Quantity {
+    /// The argument of a function of this name, which is to have this shape.
+    fn shaped(&mut self, name: &str, argument: &Term, expected: Shape) -> Typed {
         let (found, unit) = self.check(argument);
         if found != expected {
             let what = format!("the argument of `{name}`");
             self.fault(argument.span, &GraphFault::ShapeOf { what, expected, found });
         }
-        unit
+        (found, unit)
     }
 
     fn number(&mut self, builtin: Builtin, argument: &Term) {

@@ -94,7 +94,7 @@ fn options_come_from_a_file_and_those_of_the_command_line_win() {
             "t_end = \"long\"",
             "error: --config run.toml: invalid value 'long' for '--t-end <SECONDS>': not a number; --help says more\n",
         ),
-        ("set = [\"lenght=1\"]", "error: lenght=1: there is no parameter `lenght`; did you mean `length`?\n"),
+        ("set = [\"lenght=1\"]", "error: --set lenght=1: there is no parameter `lenght`; did you mean `length`?\n"),
     ] {
         write(text);
         let output = run(path, &["run", "--config", "run.toml"]);
