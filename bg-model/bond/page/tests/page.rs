@@ -54,10 +54,12 @@ fn questions() -> Vec<Value> {
 fn site() -> Option<&'static Path> {
     static SITE: OnceLock<Option<PathBuf>> = OnceLock::new();
     let site = SITE.get_or_init(|| {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page");
+        let place = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let folder = place.join("page");
         let output = Command::new(env!("CARGO_BIN_EXE_bond-page"))
             .arg(folder.join("site"))
-            .env("CARGO_TARGET_DIR", folder.join("target"))
+            // What all WebAssembly here needs is built once.
+            .env("CARGO_TARGET_DIR", place.join("webassembly"))
             .output()
             .expect("the program was built");
         let told = String::from_utf8_lossy(&output.stderr);

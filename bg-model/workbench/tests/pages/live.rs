@@ -44,11 +44,13 @@ fn parsed(answer: &str) -> Value {
 fn page() -> Option<&'static Path> {
     static PAGE: OnceLock<Option<PathBuf>> = OnceLock::new();
     let page = PAGE.get_or_init(|| {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("live");
+        let place = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let folder = place.join("live");
         let output = program("pendulum")
             .args(["report", "--live", "--t-end", "2", "--out"])
             .arg(folder.join("out"))
-            .env("CARGO_TARGET_DIR", folder.join("target"))
+            // What all WebAssembly here needs is built once.
+            .env("CARGO_TARGET_DIR", place.join("webassembly"))
             .output()
             .expect("the example was built");
         let told = String::from_utf8_lossy(&output.stderr);
