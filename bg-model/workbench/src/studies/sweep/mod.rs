@@ -36,7 +36,6 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::files::FileError;
-pub use crate::files::parquet;
 use crate::program::Program;
 use folder::{Folder, FolderError, Kind};
 use plan::{Plan, PlanError};
