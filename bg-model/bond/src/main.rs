@@ -11,7 +11,6 @@ mod parts;
 mod served;
 mod watch;
 
-use std::ffi::OsString;
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -76,11 +75,12 @@ fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -
         Ok(read) => read,
         Err(fault) => return refused(fault),
     };
-    let told: Vec<OsString> = match config::words(options.iter().cloned()) {
-        Ok(words) => words.all().collect(),
+    let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into)).chain(options);
+    let words = match config::words(words) {
+        Ok(words) => words,
         Err(fault) => return refused(fault),
     };
-    let wanted = file::Wanted { scene: arguments::only_scene(&command, &told), most };
+    let wanted = file::Wanted { scene: arguments::only_scene(&command, &words.options()), most };
     let graphs = match file::graphs(&read, &wanted) {
         Ok(graphs) => graphs,
         Err(faults) => {
@@ -90,11 +90,10 @@ fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -
     };
     match maker::Loaded::of(graphs, graph.as_deref()) {
         Ok(loaded) => {
-            let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into));
             let loaded = loaded.of_source(Source { text: read, gather: file::bundle, most });
             let loaded = if is_interpreted { loaded.by(BackEnd::Interpreter) } else { loaded };
             let program = Program::with(loaded).on_file("bond", &file.display().to_string());
-            program.version(env!("CARGO_PKG_VERSION")).main(words.chain(options))
+            program.version(env!("CARGO_PKG_VERSION")).obey(&words)
         }
         Err(fault) => refused(format!("{}: {fault}", file.display())),
     }

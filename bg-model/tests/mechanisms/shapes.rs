@@ -1,4 +1,4 @@
-//! Contacts of shapes beside models that are written by hand: a cam from which its follower lifts off, restitutions, a
+//! Contacts of shapes beside hand-written models: a cam from which its follower lifts off, restitutions, a
 //! slider-crank with a clearance, what rubs at a contact.
 
 use bg_model::dynamics::Dynamics;
@@ -18,7 +18,7 @@ fn after(text: &str, times: &[f64]) -> Vec<Vec<f64>> {
     times.iter().map(at).collect()
 }
 
-/// A law of contact by hand: the force over depth, its rate and the speed of approach.
+/// A hand-written law of contact: the force over depth, its rate and the speed of approach.
 type Law = fn(f64, f64, f64) -> f64;
 
 /// A system with one contact, whose last state is the speed of approach when the shapes last touched.
@@ -345,7 +345,7 @@ fn what_slides_on_an_incline_rubs_and_sticks() {
     let settled = 2.0 * g * 0.4_f64.cos();
     let [rolling, slipping] = [0.3, 0.05].map(|friction| after(&graph(friction), &[t]).remove(0));
     assert!((rolling[2] - settled).abs() < 1e-6 && (slipping[2] - settled).abs() < 1e-6, "{rolling:?}");
-    // What presses swings in at first: rolling does not feel it, slipping by the impulse, which is that of the weight
+    // What presses swings in initially: rolling does not depend on it, slipping by the impulse, which is that of the weight
     // but for the speed of sinking in, which has gone.
     let acceleration = g * 0.4_f64.sin() / 1.5;
     assert!((rolling[1] + acceleration * t / 0.1).abs() < 1e-3, "{rolling:?}");

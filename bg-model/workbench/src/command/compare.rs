@@ -11,11 +11,10 @@ use super::run::{follow, machine, request};
 use super::{InputError, ended, say};
 use crate::ask::inputs;
 use crate::ask::parameters::{self, Chosen};
-use crate::ask::quantity::Conversion;
 use crate::program::Program;
 use crate::run::compare::text;
 use crate::run::running::Outcome;
-use crate::run::samples::read_file;
+use crate::run::samples::read_file_of;
 
 pub fn compare(program: &Program, arguments: &CompareArguments) -> Result<ExitCode, InputError> {
     let graph = program.models.graph().description;
@@ -53,20 +52,6 @@ fn side(
         return Err(InputError::NothingToCompare(name.to_owned()));
     }
     let file = if path.is_dir() { path.join("trajectory.csv") } else { path.to_owned() };
-    let mut samples = read_file(&file)?;
-    // Those of the model's outputs are known by name; a file may have other units of them, or none.
-    for column in &mut samples.columns {
-        let mut outputs = program.models.scenes.iter().flat_map(|scene| scene.description.outputs);
-        if let Some(output) = outputs.find(|output| output.name == column.name) {
-            if !column.unit.is_empty() {
-                let unit = Conversion::between(&column.unit, output.unit).map_err(|fault| InputError::Unit {
-                    place: format!("{}, column `{}`", file.display(), column.name),
-                    fault,
-                })?;
-                column.values.iter_mut().for_each(|value| *value = unit.of(*value));
-            }
-            output.unit.clone_into(&mut column.unit);
-        }
-    }
-    Ok((samples, None))
+    let outputs = program.models.scenes.iter().flat_map(|scene| scene.description.outputs);
+    Ok((read_file_of(&file, outputs)?, None))
 }

@@ -39,6 +39,11 @@ impl Words {
     pub fn all(&self) -> impl Iterator<Item = OsString> {
         self.command.iter().chain(&self.of_file).chain(&self.own).cloned()
     }
+
+    /// Those of them that are no part of the command.
+    pub fn options(&self) -> Vec<OsString> {
+        self.of_file.iter().chain(&self.own).cloned().collect()
+    }
 }
 
 /// Takes the words apart, and reads the file that they name.
@@ -47,11 +52,11 @@ impl Words {
 /// [`ConfigError`].
 pub fn words(words: impl IntoIterator<Item = OsString>) -> Result<Words, ConfigError> {
     let mut words: Vec<OsString> = words.into_iter().collect();
-    let Some(path) = taken(&mut words)? else { return Ok(Words { command: words, ..Words::default() }) };
+    let path = taken(&mut words)?;
     let is_option = |word: &OsString| word.as_encoded_bytes().starts_with(b"-");
     let own = words.split_off(words.iter().position(is_option).unwrap_or(words.len()));
-    let of_file = options(&path)?;
-    Ok(Words { path: Some(path), command: words, of_file, own })
+    let of_file = path.as_deref().map_or(Ok(Vec::new()), options)?;
+    Ok(Words { path, command: words, of_file, own })
 }
 
 /// The value of the option, which is taken out of the words.

@@ -43,7 +43,6 @@ use thiserror::Error;
 use crate::ask::inputs::InputSettingError;
 use crate::ask::machine::Absent;
 use crate::ask::parameters::{self, SettingError};
-use crate::ask::quantity::QuantityError;
 use crate::ask::request::RequestError;
 use crate::ask::scenes::Fixed;
 use crate::files::{FileError, console};
@@ -78,8 +77,6 @@ enum InputError {
     Request(#[from] RequestError),
     #[error("{place}: {fault}")]
     Fixed { place: String, fault: Fixed },
-    #[error("{place}: {fault}")]
-    Unit { place: String, fault: QuantityError },
     #[error("{0}: neither a scene nor a run; the command `scene` lists the scenes")]
     NothingToCompare(String),
     #[error(transparent)]
@@ -148,21 +145,27 @@ impl Program {
     /// Does what `arguments` ask for, the program's name first, and gives the exit code: 0 done, 1 the run or an output
     /// failed, 2 the input cannot be used.
     pub fn main(self, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-        main(&self, arguments)
+        match config::words(arguments) {
+            Ok(words) => self.obey(&words),
+            Err(fault) => refuse(&fault),
+        }
+    }
+
+    /// The same of words that are taken apart.
+    pub fn obey(self, words: &Words) -> ExitCode {
+        main(&self, words)
     }
 }
 
-/// Does what the arguments ask for and gives the exit code.
-fn main(program: &Program, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let words = match config::words(arguments) {
-        Ok(words) => words,
-        Err(fault) => return refuse(&fault),
-    };
-    let cli = command(program);
-    // Of two values the one on the command line counts.
-    let cli = if words.path.is_some() { cli.args_override_self(true) } else { cli };
-    if let Some(fault) = fault_of_file(cli.clone(), &words) {
-        return refuse(&fault);
+/// Does what the words ask for and gives the exit code.
+fn main(program: &Program, words: &Words) -> ExitCode {
+    let mut cli = command(program);
+    if let Some(path) = &words.path {
+        // Of two values the one on the command line counts.
+        cli = cli.args_override_self(true);
+        if let Some(fault) = fault_of_file(cli.clone(), words) {
+            return refuse(&format!("{} {}: {fault}", config::OPTION, path.display()));
+        }
     }
     let cli = cli.try_get_matches_from(words.all()).and_then(|matches| Cli::from_arg_matches(&matches));
     console::set_quiet(cli.as_ref().is_ok_and(|cli| cli.quiet));
@@ -178,16 +181,13 @@ fn main(program: &Program, arguments: impl IntoIterator<Item = OsString>) -> Exi
 
 /// What is wrong with the options of a file, whatever stands on the command line.
 fn fault_of_file(cli: clap::Command, words: &Words) -> Option<String> {
-    let path = words.path.as_ref()?;
     let fault = cli.try_get_matches_from(words.command.iter().chain(&words.of_file)).err()?;
     // What a command needs beside its options, and what two options have against each other, is told of the whole.
     let is_of_one = matches!(
         fault.kind(),
         ErrorKind::UnknownArgument | ErrorKind::InvalidValue | ErrorKind::ValueValidation | ErrorKind::TooManyValues
     );
-    is_of_one.then(|| {
-        format!("{} {}: {}", config::OPTION, path.display(), console::in_one_line(&fault.render().to_string()))
-    })
+    is_of_one.then(|| console::in_one_line(&fault.render().to_string()))
 }
 
 fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {

@@ -120,7 +120,7 @@ pub fn optimize(program: &Program, arguments: &OptimizeArguments) -> Result<Exit
     let (written, faults) = write(folder, &sought, &found, [&told, &about, &scene.name]);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::print(&format!("{told}\nwritten: {written}; open {PAGE} there\n"));
+    let printed = console::tell(&format!("{told}\nwritten: {written}; open {PAGE} there\n"));
     let faults = faults.iter().map(ToString::to_string).chain(printed.err().map(|fault| fault.to_string()));
     Ok(ended(faults.chain(report::failure(&sought, &found))))
 }

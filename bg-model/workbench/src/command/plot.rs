@@ -17,7 +17,8 @@ use super::{InputError, ended};
 use crate::ask::scenes::own_values;
 use crate::files::{FileError, console, whole};
 use crate::program::Program;
-use crate::run::samples::read_file;
+use crate::run::quantities::with_unit;
+use crate::run::samples::read_file_of;
 use crate::show::figures::plot::{Mark, Plot, Series};
 
 /// What is drawn.
@@ -97,7 +98,7 @@ pub fn plot(program: &Program, arguments: &PlotArguments) -> Result<ExitCode, In
         .others
         .iter()
         .map(|path| {
-            let run = read_file(path)?;
+            let run = read_file_of(path, model.outputs.iter())?;
             asked.check(&run).map_err(|name| InputError::Unknown {
                 option: "--with",
                 fault: format!("{} has no column `{name}`", path.display()),
@@ -118,7 +119,7 @@ pub fn plot(program: &Program, arguments: &PlotArguments) -> Result<ExitCode, In
         std::fs::create_dir_all(folder).map_err(failed)?;
     }
     whole::write(&arguments.out, |file| file.write_all(svg.as_bytes()))?;
-    let printed = console::print(&format!("written: {}\n", arguments.out.display()));
+    let printed = console::tell(&format!("written: {}\n", arguments.out.display()));
     let failure = outcome.failure.map(|failure| format!("the run failed: {failure}"));
     Ok(ended(printed.err().map(|fault| fault.to_string()).into_iter().chain(failure)))
 }
@@ -185,9 +186,6 @@ impl Asked {
     }
 
     fn plot(&self, scene: &str, series: Vec<Series>, arguments: &PlotArguments) -> Plot {
-        let with_unit = |text: &str, unit: &str| {
-            if unit.is_empty() || unit == "1" { text.to_owned() } else { format!("{text} in {unit}") }
-        };
         let names: Vec<&str> = self.shown.iter().map(|signal| signal.text.as_str()).collect();
         let unit = self.shown[0].unit();
         let is_one_unit = self.shown.iter().all(|signal| signal.unit() == unit);

@@ -3,9 +3,8 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use bg_model::description::OutputInfo;
 use bg_model::run::{Request, RunError, State, sample_times};
-use bg_model::simulation::{Column, MissingColumn, Part, Recording};
+use bg_model::simulation::{MissingColumn, Part, Recording};
 
 use super::arguments::{IntegrationArguments, ModelArguments, RunArguments};
 use super::asked::Asked;
@@ -63,7 +62,7 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     let machine = machine(program, scene, &chosen)?;
     let (mut outcome, views, claimed) = claimed_and_run(&*machine, request, begin, look, claim)?;
     if !arguments.outputs.is_empty() {
-        keep(&mut outcome.run.recording, &outputs);
+        keep(&mut outcome.run.recording, outputs.iter().map(|(_, output)| output.name));
     }
     let failure = outcome.failure.as_ref().map(|failure| format!("the run failed: {failure}"));
     let saved = arguments.save_state.as_deref().map(|path| save_state(path, &outcome.run.last));
@@ -139,10 +138,14 @@ fn save_state(path: &Path, state: &State) -> Result<(), String> {
     whole::write(path, |file| file.write_all(text.as_bytes())).map_err(|fault| fault.to_string())
 }
 
-/// Leaves these outputs of a run, in this order.
-fn keep(run: &mut Recording, outputs: &[(usize, &OutputInfo)]) {
-    let mut columns: Vec<Option<Column>> = std::mem::take(&mut run.columns).into_iter().map(Some).collect();
-    run.columns = outputs.iter().filter_map(|(index, _)| columns.get_mut(*index)?.take()).collect();
+/// Leaves the columns of these names, in this order.
+fn keep<'a>(run: &mut Recording, names: impl Iterator<Item = &'a str>) {
+    let mut columns = std::mem::take(&mut run.columns);
+    let mut named = |name: &str| {
+        let place = columns.iter().position(|column| column.name == name)?;
+        Some(columns.swap_remove(place))
+    };
+    run.columns = names.filter_map(&mut named).collect();
 }
 
 /// How the summary is given.
@@ -173,12 +176,7 @@ fn report(
     summary.inputs = inputs;
     let mut rows = run.at(rows);
     if let Some(names) = extras.columns(&run) {
-        let mut columns = std::mem::take(&mut rows.columns);
-        let mut named = |name: &String| {
-            let place = columns.iter().position(|column| column.name == *name)?;
-            Some(columns.swap_remove(place))
-        };
-        rows.columns = names.iter().filter_map(&mut named).collect();
+        keep(&mut rows, names.iter().map(String::as_str));
     }
     let texts = extras.page(exhibits.description);
     let mut written = claimed.write(&rows, &run, &texts, exhibits, &mut summary);

@@ -20,3 +20,15 @@ pub fn table<const K: usize>(rows: &[[String; K]]) -> String {
     }
     text
 }
+
+/// Rows with their columns aligned to the left, for a number of columns that is not known.
+#[must_use]
+pub fn aligned(rows: &[Vec<String>]) -> String {
+    let widths: Vec<usize> =
+        (0..rows[0].len()).map(|k| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0)).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}"));
+        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}

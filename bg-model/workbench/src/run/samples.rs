@@ -3,6 +3,7 @@
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
+use bg_model::description::OutputInfo;
 use bg_model::simulation::{Column, Recording};
 use thiserror::Error;
 
@@ -23,6 +24,14 @@ pub enum SamplesError {
     /// The first column is not the time.
     #[error("the first column must be `t`")]
     NoTime,
+    /// A column is in no unit of what the model's output of its name is.
+    #[error("column `{column}`: {fault}")]
+    Unit {
+        /// The column.
+        column: String,
+        /// Why.
+        fault: QuantityError,
+    },
     /// The time is in no unit of time.
     #[error("the time: {0}")]
     Time(QuantityError),
@@ -80,6 +89,30 @@ pub fn read_file(path: &Path) -> Result<Recording, Unreadable> {
     read(file).map_err(unreadable)
 }
 
+/// Reads the file of a run of a model that has these outputs, as [`read_file`] does: columns of their names are in their
+/// units then. A file may have others, or none, which are these.
+///
+/// # Errors
+/// [`Unreadable`].
+pub fn read_file_of<'a>(
+    path: &Path,
+    outputs: impl Iterator<Item = &'a OutputInfo> + Clone,
+) -> Result<Recording, Unreadable> {
+    let mut samples = read_file(path)?;
+    for column in &mut samples.columns {
+        let Some(output) = outputs.clone().find(|output| output.name == column.name) else { continue };
+        if !column.unit.is_empty() {
+            let unit = Conversion::between(&column.unit, output.unit).map_err(|fault| Unreadable {
+                path: path.to_owned(),
+                source: SamplesError::Unit { column: column.name.clone(), fault },
+            })?;
+            column.values.iter_mut().for_each(|value| *value = unit.of(*value));
+        }
+        output.unit.clone_into(&mut column.unit);
+    }
+    Ok(samples)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -104,6 +137,24 @@ mod tests {
         assert_eq!(String::from_utf8_lossy(&bytes), "t [s],wagon[0].x [mm],ratio\n0.25,1.0,2.0\n");
         assert_eq!(read(&bytes[..]).unwrap(), samples);
         assert_eq!(read("t [ms],wagon[0].x [mm],ratio\n250,1,2\n".as_bytes()).unwrap(), samples);
+    }
+
+    #[test]
+    fn columns_come_in_the_units_of_a_model() {
+        let output = |name, unit| OutputInfo { name, of: name, observes: name, unit };
+        let outputs = [output("x", "m"), output("speed", "rad/s")];
+        let read = |text: &str| {
+            let file = tempfile::NamedTempFile::new().unwrap();
+            std::fs::write(file.path(), text).unwrap();
+            read_file_of(file.path(), outputs.iter()).map_err(|fault| fault.source.to_string())
+        };
+        let run = read("t [ms],x [mm],speed,other [V]\n250,1500,2,3\n").unwrap();
+        let columns: Vec<_> = run.columns.iter().map(|column| (column.unit.as_str(), column.values[0])).collect();
+        assert_eq!((run.times[0], columns), (0.25, vec![("m", 1.5), ("rad/s", 2.0), ("V", 3.0)]));
+        assert_eq!(
+            read("t,x [kg]\n0,1\n").unwrap_err(),
+            "column `x`: must be in m or a unit like it, and `kg` is none"
+        );
     }
 
     #[test]

@@ -222,20 +222,21 @@ fn table(
             return Err(InputSettingError::MixedHead { setting, path, name, number });
         }
     };
+    let heads: Vec<(&str, Option<&str>)> = first.iter().map(name_and_unit).collect();
     let position = match column {
-        Some(column) if has_head => first.iter().position(|head| head == column || name_and_unit(head).0 == column),
+        Some(column) if has_head => (0..heads.len()).find(|&place| heads[place].0 == column || &first[place] == column),
         Some(column) => {
             return Err(InputSettingError::NoHead { setting, path, column: column.to_owned() });
         }
         None => (first.len() > 1).then_some(1),
     };
     let Some(position) = position else {
-        let known = first.iter().map(|head| name_and_unit(head).0).collect::<Vec<_>>().join(", ");
+        let known = heads.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ");
         let column = column.unwrap_or("of values").to_owned();
         return Err(InputSettingError::NoColumn { setting, path, column, known });
     };
     let conversion = |place: usize, declared: &str| {
-        let (name, unit) = if has_head { name_and_unit(&first[place]) } else { ("", None) };
+        let (name, unit) = heads[place];
         Conversion::between(unit.unwrap_or(declared), declared).map_err(|fault| InputSettingError::Unit {
             setting: setting.clone(),
             path: path.clone(),
@@ -260,7 +261,7 @@ fn table(
         times.push(time.of(number(0)?));
         values.push(value.of(number(position)?));
     }
-    let column = has_head.then(|| name_and_unit(&first[position]).0.to_owned());
+    let column = has_head.then(|| heads[position].0.to_owned());
     let source = Source { file: path.display().to_string(), column, crc32: crc32(&bytes) };
     Ok(Setting::Table { times, values, cubic, source: Some(source) })
 }

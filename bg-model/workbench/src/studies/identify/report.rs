@@ -6,7 +6,7 @@
 use bg_model::description::OutputInfo;
 
 use super::{Column, Data, Identified, Left, Measured, NoNoise};
-use crate::files::table::table;
+use crate::files::table::{aligned, table};
 
 /// Correlations above this are pointed out.
 const STRONG: f64 = 0.95;
@@ -107,17 +107,6 @@ fn correlations(found: &Identified) -> String {
     };
     let rows: Vec<Vec<String>> = std::iter::once(head).chain(names.iter().enumerate().map(row)).collect();
     aligned(&rows)
-}
-
-/// Rows of cells of equal width, for a number of columns that is not known.
-fn aligned(rows: &[Vec<String>]) -> String {
-    let widths: Vec<usize> =
-        (0..rows[0].len()).map(|k| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0)).collect();
-    let line = |row: &Vec<String>| {
-        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}"));
-        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned() + "\n"
-    };
-    rows.iter().map(line).collect()
 }
 
 /// What is nearly one parameter.

@@ -6,7 +6,8 @@ use serde_json::{Value, json};
 use super::{End, Minimum, OptimizeError, Optimum, Sought, Trial};
 use crate::ask::parameters::number;
 use crate::files::parquet::{Column, Table, Values};
-use crate::files::table::table;
+use crate::files::table::{aligned, table};
+use crate::run::quantities::with_unit;
 use crate::show::figures::FigureError;
 use crate::show::figures::plot::{Mark, Plot, Series};
 use crate::show::sheet::{Item, sheet};
@@ -57,10 +58,6 @@ fn shortened(text: &str) -> String {
 /// So many of these.
 fn counted(count: usize, one: &str) -> String {
     if count == 1 { format!("one {one}") } else { format!("{count} {one}s") }
-}
-
-fn with_unit(text: &str, unit: &str) -> String {
-    if unit.is_empty() { text.to_owned() } else { format!("{text} in {unit}") }
 }
 
 /// In a sentence how a search has ended.
@@ -132,19 +129,9 @@ pub fn text(sought: &Sought, found: &Optimum) -> String {
     }
     if !found.front.is_empty() {
         text += "\nfront\n";
-        text += &lines(&front_rows(sought, found));
+        text += &aligned(&front_rows(sought, found));
     }
     text
-}
-
-fn lines(rows: &[Vec<String>]) -> String {
-    let widths: Vec<usize> =
-        (0..rows[0].len()).map(|k| rows.iter().map(|row| row[k].chars().count()).max().unwrap_or(0)).collect();
-    let line = |row: &Vec<String>| {
-        let cells = row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}"));
-        format!("  {}", cells.collect::<Vec<_>>().join("  ")).trim_end().to_owned() + "\n"
-    };
-    rows.iter().map(line).collect()
 }
 
 fn goals(sought: &Sought, best: &Minimum) -> Vec<[String; 4]> {

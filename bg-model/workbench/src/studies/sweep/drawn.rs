@@ -21,6 +21,7 @@ use crate::files::parquet::Values;
 use crate::files::table::table;
 use crate::files::whole;
 use crate::program::Program;
+use crate::run::quantities::with_unit;
 use crate::show::figures::FigureError;
 use crate::show::figures::plot::{Bar, Map, Mark, Plot, Series, bars, histogram};
 use crate::show::sheet::{Item, sheet};
@@ -45,11 +46,7 @@ struct Column {
 
 impl Column {
     fn head(&self) -> String {
-        if self.unit.is_empty() || self.unit == "1" {
-            self.name.clone()
-        } else {
-            format!("{} in {}", self.name, self.unit)
-        }
+        with_unit(&self.name, &self.unit)
     }
 }
 
@@ -304,8 +301,7 @@ fn items_of(found: &[Toleranced], names: &[String]) -> Vec<Item> {
     let mut items = vec![rows_item(spread_rows(found))];
     for of in found.iter().take(MOST) {
         items.push(Item::Heading(of.name.clone()));
-        let is_plain = of.unit.is_empty() || of.unit == "1";
-        let head = if is_plain { of.name.clone() } else { format!("{} in {}", of.name, of.unit) };
+        let head = with_unit(&of.name, &of.unit);
         let quantile = |k: usize| of.spread.quantiles[k].1.value;
         let marks = [("5 %", quantile(1)), ("mean", of.spread.mean.value), ("95 %", quantile(3))];
         let marks = marks.map(|(name, at)| (name.to_owned(), at));
