@@ -105,11 +105,8 @@ impl Table {
     /// Whether it has a value for every argument.
     #[must_use]
     pub fn is_everywhere(&self) -> bool {
-        let patches = self.surface.iter().flat_map(|surface| surface.patches.iter().flatten());
-        self.pieces.iter().all(|piece| piece.cubic.is_some()) && {
-            let mut patches = patches;
-            patches.all(Option::is_some)
-        }
+        let mut patches = self.surface.iter().flat_map(|surface| surface.patches.iter().flatten());
+        self.pieces.iter().all(|piece| piece.cubic.is_some()) && patches.all(Option::is_some)
     }
 }
 
