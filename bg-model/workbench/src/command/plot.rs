@@ -17,9 +17,8 @@ use super::{InputError, ended};
 use crate::ask::scenes::own_values;
 use crate::files::{FileError, console, whole};
 use crate::program::Program;
-use crate::run::quantities::with_unit;
 use crate::run::samples::read_file_of;
-use crate::show::figures::plot::{Mark, Plot, Series};
+use crate::show::figures::plot::{Mark, Plot, Series, with_unit};
 
 /// What is drawn.
 #[derive(Debug, Args)]

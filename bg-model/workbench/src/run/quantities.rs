@@ -9,12 +9,6 @@ pub(crate) fn quantities(description: &'static Description) -> impl Iterator<Ite
     description.outputs.chunk_by(|a, b| a.of == b.of)
 }
 
-/// A quantity with its unit, as axes and columns are called; a pure number has none.
-#[cfg(not(target_arch = "wasm32"))]
-pub(crate) fn with_unit(text: &str, unit: &str) -> String {
-    if matches!(unit, "" | "1") { text.to_owned() } else { format!("{text} in {unit}") }
-}
-
 /// A unit as it is set in print: `kg*m^2/s` as kg·m²/s.
 pub(crate) fn set_unit(unit: &str) -> String {
     let mut parts = unit.split('^');

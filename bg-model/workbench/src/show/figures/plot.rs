@@ -61,6 +61,12 @@ const MOST_NAMES: usize = 24;
 /// Width of the legend, CSS pixels.
 const LEGEND: i32 = 190;
 
+/// A quantity with its unit, as axes and columns are called; a pure number has none.
+#[must_use]
+pub fn with_unit(text: &str, unit: &str) -> String {
+    if matches!(unit, "" | "1") { text.to_owned() } else { format!("{text} in {unit}") }
+}
+
 impl Plot {
     /// A chart with linear axes.
     #[must_use]

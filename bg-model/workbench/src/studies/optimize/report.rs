@@ -7,9 +7,8 @@ use super::{End, Minimum, OptimizeError, Optimum, Sought, Trial};
 use crate::ask::parameters::number;
 use crate::files::parquet::{Column, Table, Values};
 use crate::files::table::{aligned, table};
-use crate::run::quantities::with_unit;
 use crate::show::figures::FigureError;
-use crate::show::figures::plot::{Mark, Plot, Series};
+use crate::show::figures::plot::{Mark, Plot, Series, with_unit};
 use crate::show::sheet::{Item, sheet};
 
 /// A number in so many digits, as tables have it.

@@ -21,9 +21,8 @@ use crate::files::parquet::Values;
 use crate::files::table::table;
 use crate::files::whole;
 use crate::program::Program;
-use crate::run::quantities::with_unit;
 use crate::show::figures::FigureError;
-use crate::show::figures::plot::{Bar, Map, Mark, Plot, Series, bars, histogram};
+use crate::show::figures::plot::{Bar, Map, Mark, Plot, Series, bars, histogram, with_unit};
 use crate::show::sheet::{Item, sheet};
 
 /// The page of a sweep, and the file of its statistics.
