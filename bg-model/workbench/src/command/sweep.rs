@@ -87,7 +87,7 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
             // The last one of several processes draws what all have made.
             let has_all = (0..outcome.shards).all(|shard| folder.has(shard, !plan.wanted.trajectories.is_empty()));
             let told = if has_all { drawn::write(program, &folder)? } else { String::new() };
-            let told = format!("{told}{}", sentence(&outcome, &folder, plan.integration.step));
+            let told = format!("{told}{}", sentence(&outcome, &folder, &plan));
             Ok(ended(console::tell(&told).err()))
         }
         // What could be made is there.
@@ -97,15 +97,18 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
 }
 
 /// What was done, and how to look at it.
-fn sentence(outcome: &Outcome, folder: &Folder, step: f64) -> String {
+fn sentence(outcome: &Outcome, folder: &Folder, plan: &Plan) -> String {
     let Outcome { runs, shards, own, found, made, made_runs, failed } = *outcome;
     let part = if own == shards { String::new() } else { format!("{own} of its {shards} files are of this part; ") };
     let before = if found == 0 { String::new() } else { format!(", {found} were there") };
+    let samples = if plan.wanted.has_sums() {
+        format!("mean and integral are those of samples every {} s\n", number(plan.integration.step))
+    } else {
+        String::new()
+    };
     let place = folder.path().display();
     format!(
         "sweep of {runs} runs: {part}{made} files made{before}; {made_runs} runs, {failed} of them failed\n\
-         mean and integral are those of samples every {} s\n\
-         written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table\n",
-        number(step)
+         {samples}written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table\n",
     )
 }

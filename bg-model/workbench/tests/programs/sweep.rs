@@ -60,7 +60,12 @@ fn a_row_has_what_a_single_run_has() {
     let folder = with_plan(PLAN);
     let path = folder.path();
     let said = text(path, &["sweep", "--plan", "plan.toml", "--out", "o"]);
-    assert!(said.starts_with("sweep of 30 runs: 5 files made; 30 runs, 0 of them failed\n"), "{said}");
+    assert!(
+        said.starts_with("sweep of 30 runs: 5 files made; 30 runs, 0 of them failed\nmean and integral are"),
+        "{said}"
+    );
+    let shown = text(path, &["sweep", "show", "o"]);
+    assert!(shown.contains("\nsamples  every 0.01 s; mean and integral are those of samples\n"), "{shown}");
     // As any new file: as the user's mask has it, be it the recipe or a shard.
     #[cfg(unix)]
     {
@@ -162,7 +167,7 @@ fn a_run_that_fails_is_a_row_with_its_reason() {
     let path = folder.path();
     fs::write(path.join("runs.csv"), "angle, length\n0.5, 0.6\n1.57, 0.4\n").unwrap();
     let said = text(path, &["sweep", "--plan", "plan.toml", "--out", "o"]);
-    assert!(said.contains("2 runs, 1 of them failed"), "{said}");
+    assert!(said.contains("2 runs, 1 of them failed\nwritten"), "{said}");
     let shard = table(path.join("o/runs-000000.parquet"));
     let [status, reasons] = [3, 4].map(|place| match &shard.columns[place].values {
         Values::Text(texts) => texts,
@@ -179,7 +184,7 @@ fn a_run_that_fails_is_a_row_with_its_reason() {
     let count = |run: i64| runs.iter().filter(|&&of| of == run).count();
     assert!(count(0) == 12 && count(1) == 1 + (100.0 * reached[1]) as usize, "{} {}", count(0), count(1));
     let said = text(path, &["sweep", "show", "o", "--csv", "o.csv"]);
-    assert!(said.contains("\nsamples  every 0.01 s; mean and integral are those of samples\n"), "{said}");
+    assert!(said.contains("\nsamples  every 0.01 s\n"), "{said}");
     assert!(said.contains("runs     2 of 2 in 1 of 1 shards\nfailed   1\n         run 1: the limit of 120"), "{said}");
     let csv = fs::read_to_string(path.join("o.csv")).unwrap();
     assert!(csv.starts_with("run,angle,length,status,reason,reached,steps,events,angle_max,"), "{csv}");

@@ -99,7 +99,14 @@ fn inputs(recipe: &toml::Table) -> String {
 /// How far the samples are apart that columns are made from.
 fn samples(recipe: &toml::Table) -> String {
     let step = recipe.get("step").map_or_else(String::new, ToString::to_string);
-    format!("samples  every {step} s; mean and integral are those of samples\n")
+    let columns = recipe.get("columns").and_then(toml::Value::as_array).into_iter().flatten();
+    let is_sum = |name: &str| name.ends_with("_mean") || name.ends_with("_integral");
+    let sums = if columns.filter_map(toml::Value::as_str).any(is_sum) {
+        "; mean and integral are those of samples"
+    } else {
+        ""
+    };
+    format!("samples  every {step} s{sums}\n")
 }
 
 fn whole(recipe: &toml::Table, name: &str) -> usize {

@@ -76,6 +76,12 @@ pub struct Wanted {
 }
 
 impl Wanted {
+    /// Whether something is summed over samples: a mean or an integral.
+    #[must_use]
+    pub fn has_sums(&self) -> bool {
+        self.reductions.iter().any(|(_, by)| matches!(by, Reduction::Mean | Reduction::Integral))
+    }
+
     /// Whether a run has to find the peaks of its outputs.
     #[must_use]
     pub fn has_peaks(&self) -> bool {
