@@ -1,4 +1,4 @@
-//! The columns of a run of the hacksaw: those of the reference trajectory, and the links' angles.
+//! The columns of a run of the hacksaw: those of the reference trajectory, joint forces, and the links' angles.
 
 use std::f64::consts::{PI, TAU};
 
@@ -24,6 +24,14 @@ pub fn reference_columns() -> Vec<String> {
             vector('C', link).into_iter().chain(matrix(link)).chain(vector('p', link)).chain(vector('h', link))
         })
         .collect()
+}
+
+/// The forces in joints, of the slot and of the cut, each with its components: what a trajectory has after the columns of the
+/// reference, as far as a scene observes it.
+#[must_use]
+pub fn forces() -> Vec<String> {
+    let of = |force: &str| AXES.map(|axis| format!("{force}_{axis}"));
+    ["F12", "F23", "F34", "F15", "F45", "Fcut"].into_iter().flat_map(of).collect()
 }
 
 /// Whether all columns of the reference trajectory are among `names`.

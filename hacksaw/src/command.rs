@@ -11,7 +11,7 @@ use bg_workbench::extras::{Extras, Page};
 use bg_workbench::figures::Figure;
 use bg_workbench::summary::Additions;
 
-use crate::columns::{has_reference_columns, reference_columns};
+use crate::columns::{forces, has_reference_columns, reference_columns};
 #[cfg(not(target_arch = "wasm32"))]
 use crate::figures::FIGURES;
 use crate::mechanism::Hacksaw;
@@ -58,7 +58,8 @@ impl Extras for Paper {
     }
 
     fn columns(&self, run: &Recording) -> Option<Vec<String>> {
-        has_reference(run).then(reference_columns)
+        let forces = || forces().into_iter().filter(|name| run.has(name));
+        has_reference(run).then(|| reference_columns().into_iter().chain(forces()).collect())
     }
 
     fn source(&self, name: &str) -> &'static str {

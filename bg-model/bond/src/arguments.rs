@@ -8,8 +8,10 @@ use std::path::PathBuf;
 
 use bg_compiler::fault::near_miss;
 use clap::error::ErrorKind;
-use clap::{Arg, ArgMatches, Command, Error, FromArgMatches, Subcommand, value_parser};
+use clap::{Arg, ArgMatches, ColorChoice, Command, Error, FromArgMatches, Subcommand, value_parser};
 use clap_complete::Shell;
+
+use bg_workbench::command::colour;
 
 use crate::served::Served;
 
@@ -103,12 +105,13 @@ pub struct Call {
 }
 
 /// The workbench's commands on a file, each with what it does.
-const COMMANDS: [(&str, &str); 14] = [
+const COMMANDS: [(&str, &str); 15] = [
     ("run", "Runs a model: a summary, and files with its outputs and figures"),
     ("report", "Runs it and writes one page: motion, charts, the graph"),
     ("plot", "Draws outputs over time, against each other, as spectra"),
     ("graph", "Prints or draws the bond graph, its states, equations and operations"),
     ("linearize", "Linear model, modes and frequency responses"),
+    ("campbell", "Natural frequencies over a parameter, critical speeds"),
     ("sweep", "Many runs by a plan"),
     ("compare", "Two scenes or runs beside each other"),
     ("precision", "Error and work of the integrators"),
@@ -119,6 +122,12 @@ const COMMANDS: [(&str, &str); 14] = [
     ("parameters", "Lists the parameters"),
     ("fmu", "Packs a functional mock-up unit"),
 ];
+/// The version, with the commit where the program was built with `BG_COMMIT=$(git rev-parse HEAD)`.
+pub fn version() -> String {
+    let commit = option_env!("BG_COMMIT").map_or_else(String::new, |commit| format!("+{commit:.12}"));
+    format!("{}{commit}", env!("CARGO_PKG_VERSION"))
+}
+
 /// Those of its command `golden`.
 const GOLDEN: [(&str, &str); 2] =
     [("record", "Runs and records"), ("check", "Runs again what is recorded and says what differs")];
@@ -159,7 +168,8 @@ impl Own {
 /// # Errors
 /// What is missing or wrong; or the help or version that is asked for.
 pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Error> {
-    let matches = command().try_get_matches_from(words)?;
+    let words: Vec<OsString> = words.into_iter().collect();
+    let matches = command().color(colour::set(words.iter().cloned())).try_get_matches_from(words)?;
     let own = || Own::from_arg_matches(&matches).and_then(Own::complete).map(Asked::Own);
     match matches.subcommand() {
         Some(("golden", inside)) => match inside.subcommand() {
@@ -179,7 +189,7 @@ pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Error> 
 }
 
 fn command() -> Command {
-    let program = Command::new("bond").version(env!("CARGO_PKG_VERSION")).arg_required_else_help(true);
+    let program = Command::new("bond").version(version()).arg_required_else_help(true);
     let program = program.disable_help_subcommand(true).allow_external_subcommands(true);
     let program =
         program.external_subcommand_value_parser(value_parser!(OsString)).subcommands(COMMANDS.map(of_workbench));
@@ -189,6 +199,11 @@ fn command() -> Command {
             of_workbench((name, does)).override_usage(format!("bond golden {name} FILE [OPTIONS]"))
         }));
     let program = Own::augment_subcommands(program.subcommand(golden)).override_usage("bond COMMAND FILE [OPTIONS]");
+    // That of commands on a file stands among their own options.
+    let colour = Arg::new("color").long("color").global(true).value_name("WHEN").default_value("auto");
+    let colour =
+        colour.value_parser(value_parser!(ColorChoice)).help("Colour help and faults: on a terminal, always or never");
+    let program = program.arg(colour);
     program.about("Runs and studies mechanisms in text files, in the language of `bond_graph!`").after_help(AFTER)
 }
 

@@ -3,13 +3,13 @@
 //! In: a text and its faults. Out: each with its code, its place in the text and what to do, as rustc shows its own;
 //! the same as JSON, one line each.
 
-#[cfg(not(target_arch = "wasm32"))]
-use std::io::{IsTerminal, stderr};
 use std::path::Path;
 
 #[cfg(not(target_arch = "wasm32"))]
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use bg_loaded::Fault;
+#[cfg(not(target_arch = "wasm32"))]
+use bg_workbench::files::console;
 use serde::Serialize;
 
 use crate::text::Text;
@@ -17,7 +17,7 @@ use crate::text::Text;
 /// Shows the faults on the error output.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn tell(text: &Text, faults: &[Fault]) {
-    let renderer = if stderr().is_terminal() { Renderer::styled() } else { Renderer::plain() };
+    let renderer = if console::is_coloured() { Renderer::styled() } else { Renderer::plain() };
     for fault in faults {
         eprintln!("{}\n", shown(text, fault, &renderer));
     }

@@ -12,14 +12,15 @@ mod served;
 mod watch;
 
 use std::fmt::Display;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use arguments::{Asked, Call, Own};
 use bg_loaded::BackEnd;
 use bg_workbench::Program;
 use bg_workbench::command::{config, manual};
-use bg_workbench::files::{FileError, console};
+use bg_workbench::files::commit::commit_of;
+use bg_workbench::files::{FileError, console, crc32};
 use bond_graph::maker::{self, Source};
 use bond_graph::{faults, file, serve};
 use served::Served;
@@ -90,10 +91,14 @@ fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -
     };
     match maker::Loaded::of(graphs, graph.as_deref()) {
         Ok(loaded) => {
+            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
+            let commit = commit_of(folder.unwrap_or_else(|| Path::new(".")));
+            let crc32 = crc32(read.text.as_bytes());
             let loaded = loaded.of_source(Source { text: read, gather: file::bundle, most });
             let loaded = if is_interpreted { loaded.by(BackEnd::Interpreter) } else { loaded };
             let program = Program::with(loaded).on_file("bond", &file.display().to_string());
-            program.version(env!("CARGO_PKG_VERSION")).obey(&words)
+            program.version(&arguments::version()).of_text(&name, &crc32).commit(commit.as_deref()).obey(&words)
         }
         Err(fault) => refused(format!("{}: {fault}", file.display())),
     }

@@ -8,10 +8,14 @@ use std::time::Duration;
 
 use tempfile::TempDir;
 
+#[path = "program/campbell.rs"]
+mod campbell;
 #[path = "program/optimize.rs"]
 mod optimize;
 #[path = "program/plot.rs"]
 mod plot;
+#[path = "program/told.rs"]
+mod told_of;
 
 /// What the program gives in a folder.
 fn bond(folder: &Path, line: &str) -> Output {

@@ -58,7 +58,7 @@ fn a_bare_run_writes_everything_into_out() {
 }
 
 #[test]
-fn the_csv_file_has_the_reference_columns_and_the_same_bytes_twice() {
+fn the_csv_file_has_the_reference_columns_the_forces_and_the_same_bytes_twice() {
     let directory = tempfile::tempdir().unwrap();
     for file in ["a.csv", "b.csv"] {
         let arguments = [&SHORT[..], &["--step", "0.02", "--csv", file, "--no-figures"]].concat();
@@ -69,8 +69,11 @@ fn the_csv_file_has_the_reference_columns_and_the_same_bytes_twice() {
     assert!(!directory.path().join("out").exists());
     let text = String::from_utf8(csv).unwrap();
     let header = text.lines().next().unwrap();
-    assert!(header.starts_with("t,C2_x,C2_y,C2_z,R2_11,") && header.ends_with(",h5_x,h5_y,h5_z"));
-    assert_eq!(header.split(',').count(), 73);
+    assert!(
+        header.starts_with("t,C2_x,C2_y,C2_z,R2_11,") && header.contains(",h5_x,h5_y,h5_z,F12_x,F12_y,F12_z,F23_x")
+    );
+    assert!(header.ends_with(",F45_z,Fcut_x,Fcut_y,Fcut_z"), "{header}");
+    assert_eq!(header.split(',').count(), 91);
     let times: Vec<&str> = text.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
     assert_eq!(times, ["0.0", "0.02", "0.04", "0.05"]);
 }

@@ -9,6 +9,7 @@
 //! | find the equilibrium near a state | [`equilibrium`] |
 //! | linearise at a state | [`linearise`], or [`linearise_at`] a state of a run; both give a [`StateSpace`] |
 //! | look at modes | [`StateSpace::modes`], [`StateSpace::table`] |
+//! | follow modes over a parameter | [`branches()`], [`crossings`] |
 //! | get frequency responses | [`StateSpace::responses`], [`logarithmic`], [`responses_csv`], [`responses_json`] |
 //! | write files | [`StateSpace::json`], [`StateSpace::npz`] |
 //! | get eigenvalues of a matrix | [`eigen_pairs`] |
@@ -27,6 +28,7 @@
 //! method finds from the guess by moves that the joints allow: what is free stays where it is, and a stable equilibrium
 //! is preferred.
 
+mod branches;
 mod carry;
 mod coordinates;
 mod descent;
@@ -44,6 +46,7 @@ mod sloped;
 mod state_space;
 mod text;
 
+pub use branches::{Branch, branches, crossings};
 pub use eigen::{EigenPair, eigen_pairs};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use error::LinearError;

@@ -76,8 +76,10 @@ pub struct Minimum {
     pub best: Trial,
     /// Both sides of each requirement there, in coherent SI.
     pub sides: Vec<[f64; 2]>,
-    /// How the search has ended.
+    /// How the search has ended, the last one where it went on elsewhere.
     pub end: End,
+    /// How often a run farther away was better than where the search had ended, and it went on from there.
+    pub hops: usize,
     /// Why there were no runs or no derivatives last, if so.
     pub fault: Option<String>,
     /// All runs, in their order.
@@ -132,6 +134,12 @@ pub enum OptimizeError {
 pub const FEASIBLE: f64 = 1e-6;
 /// How far starts are away from a given one that has no bounds, in parts of a variable's size.
 const FAR: f64 = std::f64::consts::LN_2;
+/// How far runs around a minimum are away from it, in parts of the way between a variable's bounds: ripples of a goal are
+/// narrower. And how often a search goes on from a better one of them.
+const AROUND: [f64; 2] = [0.2, 0.05];
+const HOPS: usize = 3;
+/// How much better a run farther away has to be, in parts of the goal's size.
+const BETTER: f64 = 1e-4;
 /// The bases of the starts' digits.
 const BASES: [u32; 8] = [2, 3, 5, 7, 11, 13, 17, 19];
 
@@ -252,14 +260,26 @@ pub fn minimum(
     };
     let bounds: Vec<[f64; 2]> = runs.coordinates.iter().map(Coordinate::bounds).collect();
     let [lower, upper] = [0, 1].map(|end| bounds.iter().map(|of| of[end]).collect::<Vec<f64>>());
-    let end = search(&mut runs, (&start, &numbers), [&lower, &upper], (task.steps, task.accuracy));
+    let mut end = search(&mut runs, (&start, &numbers), [&lower, &upper], (task.steps, task.accuracy));
+    let mut hops = 0;
+    // What ended for want of steps has not come to a minimum yet.
+    while hops < HOPS && matches!(end, End::Converged | End::NoStep) {
+        match runs.better_around(&bounds) {
+            ControlFlow::Continue(None) => break,
+            ControlFlow::Continue(Some((from, numbers))) => {
+                hops += 1;
+                end = search(&mut runs, (&from, &numbers), [&lower, &upper], (task.steps, task.accuracy));
+            }
+            ControlFlow::Break(()) => end = End::Stopped,
+        }
+    }
     if end == End::Stopped {
         return Err(OptimizeError::Stopped);
     }
     let Runs { best, trials, sloped, fault, .. } = runs;
     let (best, sides) = best.ok_or(OptimizeError::Stopped)?;
     let fault = fault.filter(|_| matches!(end, End::NoStep | End::NoDerivatives));
-    Ok(Minimum { job: job.clone(), best, sides, end, fault, trials, sloped })
+    Ok(Minimum { job: job.clone(), best, sides, end, hops, fault, trials, sloped })
 }
 
 /// What makes runs of the variables' values.
@@ -366,6 +386,38 @@ impl Runs<'_> {
             zero: self.zero.iter().flat_map(of).collect(),
             at_most_zero: self.at_most_zero.iter().flat_map(of).collect(),
         }
+    }
+
+    /// Looks at runs around the best one so far, each with one variable changed; gives the first better one with its numbers. A
+    /// search on derivatives ends in the next ripple of a goal that has many, as the peaks of what rings have (a poll of
+    /// pattern search: V. Torczon, SIAM J. Optim. 7 (1997) 1-25).
+    fn better_around(&mut self, bounds: &[[f64; 2]]) -> ControlFlow<(), Option<(Vec<f64>, Numbers)>> {
+        let Some((best, _)) = self.best.clone() else { return ControlFlow::Continue(None) };
+        let goal = |trial: &Trial| trial.goals.as_ref().map_or(f64::INFINITY, |goals| goals[self.job.goal]);
+        let least = goal(&best) - BETTER * self.goal.size;
+        let middle: Vec<f64> = self.coordinates.iter().zip(&best.values).map(|(of, &value)| of.inner(value)).collect();
+        for part in AROUND {
+            for (k, &[lower, upper]) in bounds.iter().enumerate() {
+                let way = if (upper - lower).is_finite() { upper - lower } else { 1.0 };
+                for sign in [1.0, -1.0] {
+                    let mut x = middle.clone();
+                    x[k] = (x[k] + sign * part * way).clamp(lower, upper);
+                    if x[k] == middle[k] {
+                        continue;
+                    }
+                    let numbers = self.numbers(&x)?;
+                    let found = self.trials.last().filter(|trial| trial.values == self.values(&x));
+                    let is_better = found.is_some_and(|trial| {
+                        let is_feasible = trial.missed <= FEASIBLE && best.missed <= FEASIBLE;
+                        if is_feasible { goal(trial) < least } else { trial.missed < 0.99 * best.missed - FEASIBLE }
+                    });
+                    if let Some(numbers) = numbers.filter(|_| is_better) {
+                        return ControlFlow::Continue(Some((x, numbers)));
+                    }
+                }
+            }
+        }
+        ControlFlow::Continue(None)
     }
 
     /// Keeps a run if it is the best one so far.

@@ -370,6 +370,26 @@ fn of_two_goals_the_front_has_no_point_that_another_beats() {
     assert!(folder.path().join("out/optimize/front.svg").exists());
 }
 
+/// A valley with ripples: a search on derivatives alone ends in the one where it starts.
+#[test]
+fn of_a_goal_with_ripples_the_valley_is_found() {
+    let folder = folder();
+    let graph = "graph Ripples { param a: 1 = 6; 1 slide: translation; I body = 1; C spring = k start 1;
+        param k: N/m = 1; slide -> body; slide -> spring; observe { x: m = spring.q; y: m = a * spring.q } }";
+    write(&folder, "ripples.bond", graph);
+    let goal_text = "(a - 3)^2 + 0.05 * sin(40 * a)";
+    let options = ["--minimize", goal_text, "--by", "a=0..10", "--t-end", "0.1"];
+    let found = found(folder.path(), "ripples.bond", &options);
+    let of = |a: f64| (a - 3.0).powi(2) + 0.05 * (40.0 * a).sin();
+    let all = (0..=1_000_000).map(|k| of(1e-5 * f64::from(k)));
+    let (least, start) = (all.fold(f64::INFINITY, f64::min), of(6.0));
+    let a = parameter(&found, "a");
+    assert!((of(a) - goal(&found)).abs() < 1e-12 && goal(&found) < least + 1e-3 * start, "{a}: {}", goal(&found));
+    assert!(found["best"]["hops"].as_u64() >= Some(1), "{found}");
+    let told = std::fs::read_to_string(folder.path().join("out/optimize/optimize.txt")).expect("a report");
+    assert!(told.contains("from a better run farther away: there are many minima; --starts 8 sees more"), "{told}");
+}
+
 #[test]
 fn what_fails_is_told() {
     let folder = folder();

@@ -59,7 +59,7 @@ export class Charts {
 
   /** Shows other charts in `parent`; where they are those that are there, with other values, they stay as they are seen. */
   replace(parent, times, charts) {
-    const old = this.#charts.filter((chart) => chart.place.parentElement === parent);
+    const old = this.in(parent);
     const isSame = old.length === charts.length && old.every((chart, index) => chart.fits(charts[index]));
     if (isSame) {
       old.forEach((chart, index) => chart.update(times, charts[index].curves));
@@ -78,6 +78,11 @@ export class Charts {
 
   get all() {
     return this.#charts;
+  }
+
+  /** Those in `parent`. */
+  in(parent) {
+    return this.#charts.filter((chart) => chart.place.parentElement === parent);
   }
 
   /** The largest magnitude in charts of this unit. */
@@ -112,7 +117,8 @@ class Chart {
     this.#take(curves);
     // Of many curves those that stay as they are would only hide the others.
     const isStill = (values) => values.every((value) => value === values[0]);
-    const still = curves.length > 3 ? curves.flatMap((_, index) => (isStill(this.values[index]) ? [index] : [])) : [];
+    const own = curves.filter(({ like }) => like === undefined);
+    const still = own.length > 3 ? curves.flatMap((_, index) => (isStill(this.values[index]) ? [index] : [])) : [];
     this.#hidden = new Set(still.length < curves.length ? still : []);
     this.legend = curves.map((curve, index) => this.#entry(curve, index));
     this.canvas = element("div", { class: "canvas", style: `height:${height}px` });
@@ -145,10 +151,10 @@ class Chart {
       "button",
       {
         type: "button",
-        class: "key",
+        class: curve.like === undefined ? "key" : "key other",
         "aria-pressed": String(!this.#hidden.has(index)),
         title: "Show or hide this curve",
-        style: `--hue: var(--hue-${index % 7})`,
+        style: `--hue: var(--hue-${(curve.like ?? index) % 7})`,
         onclick: () => this.#toggle(index),
       },
       element("span", { class: "name" }, curve.name),
@@ -165,6 +171,7 @@ class Chart {
   }
 
   #take(curves) {
+    this.curves = curves;
     this.values = curves.map((curve) => curve.values);
     this.size = magnitude(this.values.map(magnitude));
   }
@@ -273,8 +280,9 @@ class Chart {
       ],
       series: [
         {},
-        ...this.curves.map((_, index) => ({
-          stroke: hue(index),
+        ...this.curves.map(({ like }, index) => ({
+          stroke: hue(like ?? index),
+          dash: like === undefined ? [] : [5, 4],
           width: 1.6,
           points: { show: false },
           show: !this.#hidden.has(index),

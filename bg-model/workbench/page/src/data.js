@@ -36,6 +36,10 @@ export function read(data) {
     ...data,
     charts: data.charts.map(chart),
     balance: data.balance.map(chart),
+    others: data.others.map(({ columns, ...rest }) => ({
+      ...rest,
+      columns: columns.map((column) => ({ ...column, values: filled(column.values, rest.times.length) })),
+    })),
     animation: data.animation && motion(data.animation),
   };
 }

@@ -2,12 +2,14 @@
 // In: `<script type="application/json" id="data">` and the packed texts, whose form bg-workbench's `page/data.rs`
 // says; what draws a machine, if the page is to have one. Out: the page in motion.
 
+import { Against } from "./against.js";
 import { Charts } from "./charts.js";
 import { Clock } from "./clock.js";
 import { player } from "./controls.js";
 import { read } from "./data.js";
 import { graph } from "./graph.js";
-import { onPaper } from "./page.js";
+import { withOthers } from "./others.js";
+import { element, onPaper } from "./page.js";
 import { texts } from "./texts.js";
 import { trial } from "./trial.js";
 import { Tuning } from "./tuning.js";
@@ -41,7 +43,7 @@ async function draw() {
 }
 
 /** The sliders of a live page; what else is on it follows them. */
-async function tuning({ mark, view, picture }) {
+async function tuning({ mark, view, picture, against, wanted }) {
   if (!section("live")) return null;
   const settings = JSON.parse(section("live").textContent);
   const defaults = new Map(settings.parameters.map((parameter) => [parameter.name, parameter.default]));
@@ -49,7 +51,9 @@ async function tuning({ mark, view, picture }) {
     const { times, events, animation, ...shown } = read(answer.data);
     clock.span(times[0], times.at(-1));
     mark(events);
-    charts.replace(section("chart-list"), times, shown.charts);
+    charts.replace(section("chart-list"), times, withOthers(shown.charts, times, data.others));
+    wanted?.choose();
+    against?.update();
     if (section("balance-charts")) charts.replace(section("balance-charts"), times, shown.balance);
     if (animation) view?.update(animation);
     picture?.update(answer.bonds);
@@ -59,10 +63,30 @@ async function tuning({ mark, view, picture }) {
   return made;
 }
 
+/** So many charts are seen at once. */
+const FEW = 6;
+
+/** A field that leaves those charts whose names have its text. */
+function filter(outputs) {
+  const field = element("input", { type: "search", class: "wanted", placeholder: "only outputs with \u2026", "aria-label": "Filter the outputs" });
+  const choose = () => {
+    const text = field.value.trim().toLowerCase();
+    for (const { place, title, curves } of charts.in(outputs)) {
+      const names = [title, ...curves.map(({ name }) => name), ...curves.map(({ column }) => column ?? "")];
+      place.hidden = !names.some((name) => name.toLowerCase().includes(text));
+    }
+  };
+  field.addEventListener("input", choose);
+  outputs.before(field);
+  return { field, choose };
+}
+
 /** Fills the page; `machine` has what makes the section of the machine and the modes that it swings in. */
 async function start({ motion, modes }) {
   const mark = player(section("player"), clock, data.events);
-  for (const chart of data.charts) charts.add(section("chart-list"), data.times, chart);
+  const outputs = section("chart-list");
+  for (const chart of withOthers(data.charts, data.times, data.others)) charts.add(outputs, data.times, chart);
+  const wanted = data.charts.length > FEW ? filter(outputs) : null;
   for (const chart of data.balance) charts.add(section("balance-charts"), data.times, chart);
   // Where the machine is to move at once, that comes first.
   if (!plays) await painted();
@@ -79,9 +103,10 @@ async function start({ motion, modes }) {
   const bonds = JSON.parse(await unpacked("bonds"));
   const picture = section("picture") ? graph(section("picture"), bonds, charts) : null;
   onPaper((isPaper) => view?.print(isPaper));
-  const live = await tuning({ mark, view, picture });
+  const against = section("against") ? new Against(section("against"), () => charts.in(outputs), clock) : null;
+  const live = await tuning({ mark, view, picture, against, wanted });
   await draw();
-  return { clock, charts, view, picture, live, faults };
+  return { clock, charts, view, picture, live, against, faults };
 }
 
 /** Fills the page as its address asks for: as it is, under test, or with the machine alone. */

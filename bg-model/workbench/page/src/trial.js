@@ -91,7 +91,19 @@ async function tuned({ charts, live }) {
   };
 }
 
-async function found(verdict, { clock, charts, view, picture, live }) {
+/** What is drawn against what, and that its dot follows the time. */
+async function path(against, clock) {
+  if (!against) return null;
+  const dot = () => ["cx", "cy"].map((name) => Number(against.place.querySelector(".dot").getAttribute(name)));
+  clock.seek(clock.start);
+  const first = dot();
+  clock.seek(clock.end);
+  const last = dot();
+  const paths = against.place.querySelectorAll("path[d^=M]").length;
+  return { chosen: against.lists.map((list) => list.value), paths, first, last };
+}
+
+async function found(verdict, { clock, charts, view, picture, live, against }) {
   await frame();
   clock.speed = (clock.end - clock.start) / 2;
   clock.play();
@@ -122,6 +134,7 @@ async function found(verdict, { clock, charts, view, picture, live }) {
     await frame();
     verdict.bond_charts = document.querySelectorAll(".bond-panel .chart").length;
   }
+  verdict.against = await path(against, clock);
   verdict.live = await tuned({ charts, live });
   dispatchEvent(new Event("beforeprint"));
   verdict.blank_on_paper = charts.all.filter((chart) => chart.over === null).length;

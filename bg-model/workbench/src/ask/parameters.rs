@@ -176,6 +176,19 @@ impl Chosen {
     }
 }
 
+/// Parameters for programs: by their names default, unit, ends of the range, meaning. An end that is open is null.
+#[must_use]
+pub fn json(rows: &[ParameterInfo]) -> serde_json::Value {
+    let one = |info: &ParameterInfo| {
+        let value = serde_json::json!({
+            "default": info.default, "unit": info.unit, "lower": info.range.lower, "upper": info.range.upper,
+            "range": info.range.to_string(), "doc": one_line(info.doc),
+        });
+        (info.name.to_owned(), value)
+    };
+    rows.iter().map(one).collect::<serde_json::Map<_, _>>().into()
+}
+
 /// The defaults of `table`, changed by the file and then by the `NAME=VALUE` texts in their order.
 ///
 /// # Errors

@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use bg_model::integrator::Integrator;
 use bg_model::run::Request;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+use super::campbell::CampbellArguments;
 use super::identify::IdentifyArguments;
 use super::methods::integrator;
 use super::optimize::OptimizeArguments;
@@ -32,6 +33,10 @@ pub struct Cli {
     #[arg(long, short, global = true)]
     pub quiet: bool,
 
+    /// Colour help and faults: on a terminal, always or never
+    #[arg(long, global = true, value_name = "WHEN", default_value = "auto")]
+    pub color: ColorChoice,
+
     /// Take options from a TOML file: `t-end = 2`, `output = ["a", "b"]`, a table [set] of parameters. Those on the
     /// command line come after them
     #[arg(long, global = true, value_name = "FILE.toml")]
@@ -52,6 +57,10 @@ pub enum Command {
         /// The scene to report on; without it, one line for each
         #[arg(value_name = "NAME", id = "scene")]
         scene: Option<String>,
+
+        /// Print it as JSON: the scenes with their states, parameters and outputs
+        #[arg(long)]
+        json: bool,
     },
     /// Print or draw the multibond graph of a scene: elements, bonds with causal strokes, states, equations, operations
     Graph(GraphArguments),
@@ -59,6 +68,8 @@ pub enum Command {
     Precision(PrecisionArguments),
     /// Linearise at an equilibrium or at some time: modes, frequency responses, A, B, C and D
     Linearize(LinearizeArguments),
+    /// Follow natural frequencies over a parameter, such as a rotor's speed: a Campbell diagram, critical speeds
+    Campbell(CampbellArguments),
     /// Differentiate a run by parameters, exactly and through events: which parameter moves which output, or one number
     /// by all parameters at once
     Sensitivity(SensitivityArguments),
@@ -82,6 +93,10 @@ pub enum Command {
         /// Print them as a file for --params
         #[arg(long)]
         toml: bool,
+
+        /// Print them as JSON, by their names
+        #[arg(long, conflicts_with = "toml")]
+        json: bool,
     },
     /// Print what makes a shell complete commands, options, scenes and cases
     Completions {
@@ -233,6 +248,16 @@ pub struct RunArguments {
     #[arg(long = "output", value_name = "NAME", value_delimiter = ',')]
     pub outputs: Vec<String>,
 
+    /// Show another run or a measurement, a CSV file whose columns have names of outputs, in the charts of the page; can be
+    /// given again and again
+    #[arg(long = "with", value_name = "FILE.csv")]
+    pub others: Vec<PathBuf>,
+
+    /// Draw a picture on the page: "pin.force.y over pin.force.x", "spectrum of speed", "orders of torque over crank.angle",
+    /// or a signal over time; ", 2.." at its end leaves the first 2 s out. Can be given again and again
+    #[arg(long = "plot", value_name = "PICTURE", allow_hyphen_values = true)]
+    pub plots: Vec<String>,
+
     /// Write the state at the end here, for --from
     #[arg(long, value_name = "FILE.json")]
     pub save_state: Option<PathBuf>,
@@ -341,6 +366,10 @@ pub struct LinearizeArguments {
     #[arg(long, value_name = "NUMBER", default_value = "1e-8", value_parser = real, allow_negative_numbers = true)]
     pub rtol: f64,
 
+    /// Print what is found as JSON in place of the text
+    #[arg(long)]
+    pub json: bool,
+
     /// Folder for modes.txt, linear.json, linear.npz, responses.csv and Bode diagrams, which replace those of the run
     /// before
     #[arg(long, value_name = "DIR", default_value = "out/linear")]
@@ -352,7 +381,7 @@ impl LinearizeArguments {
     pub fn of_scene(scene: &str) -> Self {
         let model = ModelArguments { scene: scene.to_owned(), set: Vec::new(), params: None, input: Vec::new() };
         let Request { method, rtol, .. } = Request::default();
-        Self { model, at: None, method, rtol, out: PathBuf::new() }
+        Self { model, at: None, method, rtol, json: false, out: PathBuf::new() }
     }
 
     /// How the run to `t` (s) is made.
@@ -396,6 +425,10 @@ pub struct CheckArguments {
     /// Which of them [default: all]
     #[arg(value_name = "NAME")]
     pub names: Vec<String>,
+
+    /// Print what is found as JSON in place of the text: of each whether it is as recorded, and what differs
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -422,6 +455,10 @@ pub struct CompareArguments {
 
     #[command(flatten)]
     pub integration: IntegrationArguments,
+
+    /// Print what is found as JSON in place of the text
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]

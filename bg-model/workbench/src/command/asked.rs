@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use bg_model::description::ParameterInfo;
 use bg_model::run::State;
 
 use super::InputError;
@@ -12,7 +11,7 @@ use crate::ask::parameters::{self, Chosen};
 use crate::ask::request::Integration;
 use crate::ask::scenes::Scene;
 use crate::program::Program;
-use crate::run::recipe::{self, AgainError, Quantity, Recipe, fingerprint, input_files};
+use crate::run::recipe::{self, AgainError, ModelFile, Recipe, fingerprint, input_files};
 use crate::run::running::Begin;
 
 /// What is asked of a run, from the command line or from a summary.
@@ -88,16 +87,16 @@ impl<'a> Asked<'a> {
         let infos = program.models.graph().description.inputs;
         let settings = inputs::settings(&inputs, infos)?;
         chosen.inputs = inputs::made(&settings);
-        let quantity = |(info, value): (&ParameterInfo, f64)| {
-            (info.name.to_owned(), Quantity { value, unit: info.unit.to_owned() })
-        };
+        let text = &program.texts.text;
         let recipe = Recipe {
             program: program.texts.name.clone(),
             version: program.texts.version.clone(),
             workbench: env!("CARGO_PKG_VERSION").to_owned(),
+            model_file: text.clone().map(|(name, crc32)| ModelFile { name, crc32 }),
+            commit: program.texts.commit.clone(),
             model: fingerprint(scene.description),
             scene: scene.name.clone(),
-            parameters: chosen.values.all().map(quantity).collect(),
+            parameters: recipe::quantities(&chosen.values),
             inputs,
             input_files: input_files(&inputs::named(&settings, infos)),
             integration,

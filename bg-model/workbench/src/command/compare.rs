@@ -12,7 +12,7 @@ use super::{InputError, ended, say};
 use crate::ask::inputs;
 use crate::ask::parameters::{self, Chosen};
 use crate::program::Program;
-use crate::run::compare::text;
+use crate::run::compare::{json, text};
 use crate::run::running::Outcome;
 use crate::run::samples::read_file_of;
 
@@ -29,7 +29,11 @@ pub fn compare(program: &Program, arguments: &CompareArguments) -> Result<ExitCo
         true => inputs::text(&named, [0.0, request.t_end]),
         false => String::new(),
     };
-    let code = say(&format!("{}{inputs}", text([&arguments.a, &arguments.b], &a, &b)));
+    let told = match arguments.json {
+        true => format!("{:#}\n", json(&a, &b)),
+        false => format!("{}{inputs}", text([&arguments.a, &arguments.b], &a, &b)),
+    };
+    let code = say(&told);
     let failures: Vec<String> = first.into_iter().chain(second).collect();
     Ok(if failures.is_empty() { code } else { ended(failures) })
 }

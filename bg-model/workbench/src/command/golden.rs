@@ -2,6 +2,8 @@
 
 use std::process::ExitCode;
 
+use serde_json::{Value, json};
+
 use super::arguments::{CheckArguments, RecordArguments};
 use super::run::{chosen, claimed_and_run, machine};
 use super::{InputError, ended};
@@ -24,12 +26,31 @@ pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode
     if let Some(failure) = failure {
         return Ok(ended([format!("the run failed, nothing is recorded: {failure}")]));
     }
-    let written = place.write(&scene.name, (&model.input, &named), integration, &chosen.values, &run);
+    let written = place.write(
+        (&scene.name, program.texts.commit.as_deref()),
+        (&model.input, &named),
+        integration,
+        &chosen.values,
+        &run,
+    );
     Ok(ended(written.and_then(|line| console::tell(&format!("{line}\n"))).err()))
 }
 
 pub fn check(program: &Program, arguments: &CheckArguments) -> Result<ExitCode, InputError> {
     let mut faults = Vec::new();
+    if arguments.json {
+        let one = |prepared| match check_one(program, &prepared) {
+            Ok(agreement) => json!({ "name": agreement.name(), "is_as_recorded": true, "differences": [] }),
+            Err(deviating) => {
+                let differences: Vec<String> = deviating.differences.iter().map(ToString::to_string).collect();
+                json!({ "name": deviating.name, "is_as_recorded": false, "differences": differences })
+            }
+        };
+        let all: Vec<Value> = prepare(program, &arguments.out, &arguments.names)?.into_iter().map(one).collect();
+        let is_all = all.iter().all(|one| one["is_as_recorded"] == true);
+        console::print(&format!("{:#}\n", Value::from(all)))?;
+        return Ok(if is_all { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+    }
     for prepared in prepare(program, &arguments.out, &arguments.names)? {
         match check_one(program, &prepared) {
             Ok(agreement) => {

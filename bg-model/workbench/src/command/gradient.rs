@@ -13,7 +13,7 @@ use super::sensitivity::{SensitivityArguments, adjustable, at, observed};
 use super::{InputError, ended};
 use crate::ask::inputs;
 use crate::ask::scenes::Scene;
-use crate::files::{FileError, RunFolder, console};
+use crate::files::{FileError, RunFolder, console, json};
 use crate::program::Program;
 use crate::show::output::OutputError;
 use crate::studies::gradient::{Slope, csv, text};
@@ -97,7 +97,8 @@ pub fn gradient(program: &Program, arguments: &SensitivityArguments) -> Result<E
     let place = written
         .as_ref()
         .map_or_else(|_| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::tell(&format!("{told}\nwritten: {place}\n"));
+    let told = format!("{told}\nwritten: {place}\n");
+    let printed = console::tell_as(arguments.json, &told, || json::rows(&csv(found.value, &unit, &slopes)));
     Ok(ended(written.err().map(OutputError::from).into_iter().chain(printed.err().map(OutputError::from))))
 }
 

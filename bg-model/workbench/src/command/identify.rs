@@ -65,6 +65,10 @@ pub struct IdentifyArguments {
     #[arg(long, value_name = "NUMBER", default_value = "1e-8")]
     pub rtol: f64,
 
+    /// Print what is found as JSON in place of the text
+    #[arg(long)]
+    pub json: bool,
+
     /// Folder for identify.txt, identified.toml (for --params) and a figure of each column
     #[arg(long, value_name = "DIR", default_value = "out/identify")]
     pub out: PathBuf,
@@ -99,7 +103,8 @@ pub fn identify(program: &Program, arguments: &IdentifyArguments) -> Result<Exit
     let (written, faults) = write(folder, &told, &found, &data, scene);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::tell(&format!("{told}\nwritten: {written}\n"));
+    let json = || report::json(&found, &data, outputs);
+    let printed = console::tell_as(arguments.json, &format!("{told}\nwritten: {written}\n"), json);
     let unfinished = if !found.has_converged {
         Some("the fit did not converge; start nearer with --set, or fit fewer".to_owned())
     } else if !found.leaves_noise() {

@@ -42,7 +42,8 @@ pub fn linearize(program: &Program, arguments: &LinearizeArguments) -> Result<Ex
     let (written, faults) = write(folder, &space, &text);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::tell(&format!("{text}\nwritten: {written}\n"));
+    let json = || serde_json::from_str(&space.json()).expect("a linear model is JSON");
+    let printed = console::tell_as(arguments.json, &format!("{text}\nwritten: {written}\n"), json);
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
 }
 

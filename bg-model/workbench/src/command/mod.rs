@@ -7,6 +7,8 @@
 mod arguments;
 mod asked;
 pub mod calls;
+mod campbell;
+pub mod colour;
 mod compare;
 pub mod config;
 mod fmu;
@@ -44,7 +46,7 @@ use crate::ask::inputs::InputSettingError;
 use crate::ask::machine::Absent;
 use crate::ask::parameters::{self, SettingError};
 use crate::ask::request::RequestError;
-use crate::ask::scenes::Fixed;
+use crate::ask::scenes::{Fixed, Scene};
 use crate::files::{FileError, console};
 use crate::live::ModuleError;
 use crate::program::Program;
@@ -159,7 +161,7 @@ impl Program {
 
 /// Does what the words ask for and gives the exit code.
 fn main(program: &Program, words: &Words) -> ExitCode {
-    let mut cli = command(program);
+    let mut cli = command(program).color(colour::set(words.all()));
     if let Some(path) = &words.path {
         // Of two values the one on the command line counts.
         cli = cli.args_override_self(true);
@@ -202,16 +204,25 @@ fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
         Command::Linearize(arguments) => linearize::linearize(program, &arguments),
         Command::Identify(arguments) => identify::identify(program, &arguments),
         Command::Optimize(arguments) => optimize::optimize(program, &arguments),
+        Command::Campbell(arguments) => campbell::campbell(program, &arguments),
         Command::Plot(arguments) => plot::plot(program, &arguments),
         Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),
-        Command::Scene { scene: None } => Ok(say(&tables::scenes(&program.models.scenes))),
-        Command::Scene { scene: Some(name) } => {
+        Command::Scene { scene, json: true } => {
+            let wanted = |known: &&Scene| scene.as_ref().is_none_or(|scene| known.name == *scene);
+            let all = program.models.scenes.iter().filter(wanted).map(tables::json).collect::<serde_json::Value>();
+            Ok(say(&format!("{all:#}\n")))
+        }
+        Command::Scene { scene: None, json: false } => Ok(say(&tables::scenes(&program.models.scenes))),
+        Command::Scene { scene: Some(name), json: false } => {
             Ok(say(&tables::scene(program.scene_called(&name), program.models.defaults().table())))
         }
         Command::Graph(arguments) => graph::graph(program, &arguments),
         Command::Fmu(arguments) => fmu::pack(program, &arguments),
-        Command::Parameters { toml: true } => Ok(say(&parameters::to_toml(&program.models.defaults()))),
-        Command::Parameters { toml: false } => Ok(say(&parameters::table(program.models.defaults().table()))),
+        Command::Parameters { json: true, .. } => {
+            Ok(say(&format!("{:#}\n", parameters::json(program.models.defaults().table()))))
+        }
+        Command::Parameters { toml: true, .. } => Ok(say(&parameters::to_toml(&program.models.defaults()))),
+        Command::Parameters { .. } => Ok(say(&parameters::table(program.models.defaults().table()))),
         Command::Completions { shell } => Ok(say(&manual::completions(self::command(program), shell))),
         Command::Man { out: None } => Ok(say(&manual::page(self::command(program)))),
         Command::Man { out: Some(folder) } => {

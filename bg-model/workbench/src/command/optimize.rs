@@ -75,6 +75,10 @@ pub struct OptimizeArguments {
     #[command(flatten)]
     pub integration: IntegrationArguments,
 
+    /// Print what is found as JSON in place of the text
+    #[arg(long)]
+    pub json: bool,
+
     /// Folder for index.html, optimize.txt, optimize.json, optimize.csv, optimize.parquet, optimum.toml (for --params),
     /// optimize.svg; of two goals front.csv and front.svg
     #[arg(long, value_name = "DIR", default_value = "out/optimize")]
@@ -120,7 +124,8 @@ pub fn optimize(program: &Program, arguments: &OptimizeArguments) -> Result<Exit
     let (written, faults) = write(folder, &sought, &found, [&told, &about, &scene.name]);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::tell(&format!("{told}\nwritten: {written}; open {PAGE} there\n"));
+    let told = format!("{told}\nwritten: {written}; open {PAGE} there\n");
+    let printed = console::tell_as(arguments.json, &told, || report::json(&sought, &found));
     let faults = faults.iter().map(ToString::to_string).chain(printed.err().map(|fault| fault.to_string()));
     Ok(ended(faults.chain(report::failure(&sought, &found))))
 }

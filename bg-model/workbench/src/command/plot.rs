@@ -4,8 +4,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use bg_analysis::criterion::{Criteria, Signal};
-use bg_analysis::spectrum::{over_frequency, over_order};
+use bg_analysis::criterion::Criteria;
 use bg_model::description::Description;
 use bg_model::run::{Request, sample_times};
 use bg_model::simulation::{Recording, Samples};
@@ -18,7 +17,7 @@ use crate::ask::scenes::own_values;
 use crate::files::{FileError, console, whole};
 use crate::program::Program;
 use crate::run::samples::read_file_of;
-use crate::show::figures::plot::{Mark, Plot, Series, with_unit};
+use crate::show::signals::{Drawing, Over};
 
 /// What is drawn.
 #[derive(Debug, Args)]
@@ -44,7 +43,8 @@ pub struct PlotArguments {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub from: f64,
 
-    /// Draw spectra up to this frequency or order only
+    /// Draw spectra up to this frequency or order only [default: a quarter above the last amplitude that is a thousandth of
+    /// the largest one]
     #[arg(long, value_name = "NUMBER")]
     pub up_to: Option<f64>,
 
@@ -74,13 +74,7 @@ pub fn plot(program: &Program, arguments: &PlotArguments) -> Result<ExitCode, In
     let (chosen, _) = chosen(program, &arguments.model)?;
     let scene = program.scene_called(&arguments.model.scene);
     let model = scene.description;
-    let mut criteria = Criteria::new(model);
-    let mut signal = |option: &'static str, text: &str| {
-        criteria.signal(text).map_err(|fault| InputError::Unknown { option, fault: format!("{text}: {fault}") })
-    };
-    let shown = arguments.show.iter().map(|text| signal("--show", text)).collect::<Result<Vec<_>, _>>()?;
-    let over = arguments.over.as_ref().map(|text| signal("--over", text)).transpose()?;
-    let order = arguments.order.as_ref().map(|text| signal("--order", text)).transpose()?;
+    let drawing = arguments.drawing(model)?;
     let request = request(&arguments.integration, 0.0, None)?;
     if !(0.0..request.t_end).contains(&arguments.from) {
         let range = format!("a time in the run, 0 to {} s", request.t_end);
@@ -90,27 +84,19 @@ pub fn plot(program: &Program, arguments: &PlotArguments) -> Result<ExitCode, In
     let rows = sample_times(arguments.from, step, request.t_end);
     let samples = Samples::At(rows);
     let machine = machine(program, scene, &chosen)?;
-    let asked = Asked { model, shown, over, order };
     let own = own_values(scene, &program.models.scenes, &chosen.values)
         .map_err(|fault| InputError::Unknown { option: "--set", fault: fault.to_string() })?;
-    let others: Vec<(String, Recording)> = arguments
-        .others
-        .iter()
-        .map(|path| {
-            let run = read_file_of(path, model.outputs.iter())?;
-            asked.check(&run).map_err(|name| InputError::Unknown {
-                option: "--with",
-                fault: format!("{} has no column `{name}`", path.display()),
-            })?;
-            Ok((path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned()), run))
-        })
-        .collect::<Result<_, InputError>>()?;
-    let outcome = follow(&*machine, Request { samples, ..request }, None)?;
-    let mut series = asked.series("", &outcome.run.recording, own.values(), arguments);
-    for (name, run) in &others {
-        series.extend(asked.series(name, run, own.values(), arguments));
+    let others = others(&arguments.others, model)?;
+    for (path, (_, run)) in arguments.others.iter().zip(&others) {
+        drawing.check(run).map_err(|name| InputError::Unknown {
+            option: "--with",
+            fault: format!("{} has no column `{name}`", path.display()),
+        })?;
     }
-    let svg = asked.plot(&scene.name, series, arguments).drawn().map_err(|source| {
+    let outcome = follow(&*machine, Request { samples, ..request }, None)?;
+    let others = others.iter().map(|(name, run)| (name.as_str(), run));
+    let runs: Vec<(&str, &Recording)> = std::iter::once(("", &outcome.run.recording)).chain(others).collect();
+    let svg = drawing.plot(&scene.name, &runs, own.values()).drawn().map_err(|source| {
         crate::show::output::OutputError::Figure { file: arguments.out.display().to_string(), source }
     })?;
     if let Some(folder) = arguments.out.parent() {
@@ -123,81 +109,28 @@ pub fn plot(program: &Program, arguments: &PlotArguments) -> Result<ExitCode, In
     Ok(ended(printed.err().map(|fault| fault.to_string()).into_iter().chain(failure)))
 }
 
-/// What is drawn of each run.
-struct Asked {
-    model: &'static Description,
-    shown: Vec<Signal>,
-    over: Option<Signal>,
-    order: Option<Signal>,
+impl PlotArguments {
+    fn drawing(&self, model: &'static Description) -> Result<Drawing, InputError> {
+        let mut criteria = Criteria::new(model);
+        let mut signal = |option: &'static str, text: &str| {
+            criteria.signal(text).map_err(|fault| InputError::Unknown { option, fault: format!("{text}: {fault}") })
+        };
+        let shown = self.show.iter().map(|text| signal("--show", text)).collect::<Result<Vec<_>, _>>()?;
+        let over = match (&self.order, &self.over) {
+            (Some(angle), _) => Over::Order(signal("--order", angle)?),
+            (None, Some(over)) => Over::Signal(signal("--over", over)?),
+            (None, None) if self.spectrum => Over::Frequency,
+            (None, None) => Over::Time,
+        };
+        Ok(Drawing { model, shown, over, from: self.from, up_to: self.up_to, is_logarithmic: self.log })
+    }
 }
 
-impl Asked {
-    fn signals(&self) -> impl Iterator<Item = &Signal> {
-        self.shown.iter().chain(&self.over).chain(&self.order)
-    }
-
-    /// The columns that are needed of another run.
-    ///
-    /// # Errors
-    /// The name of one that it has not.
-    fn check(&self, run: &Recording) -> Result<(), &'static str> {
-        let needed = self.signals().flat_map(Signal::outputs).map(|place| self.model.outputs[place].name);
-        needed.into_iter().try_for_each(|name| match run.columns.iter().any(|column| column.name == name) {
-            true => Ok(()),
-            false => Err(name),
-        })
-    }
-
-    /// What is drawn of a run, which is called `name` where there are several.
-    fn series(&self, name: &str, run: &Recording, parameters: &[f64], arguments: &PlotArguments) -> Vec<Series> {
-        let from = run.times.partition_point(|t| *t < arguments.from);
-        let times = &run.times[from..];
-        let column = |place: usize| {
-            let wanted = self.model.outputs[place].name;
-            let found = run.columns.iter().find(|column| column.name == wanted);
-            found.map_or(&[][..], |column| &column.values[from..])
-        };
-        let values = |signal: &Signal| signal.values(self.model, parameters, times, column);
-        let angles = self.order.as_ref().map(values);
-        let over = self.over.as_ref().map(values);
-        let pair = |signal: &Signal| -> Vec<(f64, f64)> {
-            let own = values(signal);
-            let mut points: Vec<(f64, f64)> = match (&angles, &over) {
-                (Some(angles), _) => over_order(angles, &own),
-                (None, Some(over)) => over.iter().copied().zip(own).collect(),
-                (None, None) if arguments.spectrum => over_frequency(times, &own),
-                (None, None) => times.iter().copied().zip(own).collect(),
-            };
-            if let Some(end) = arguments.up_to.filter(|_| angles.is_some() || arguments.spectrum) {
-                points.retain(|(place, _)| *place <= end);
-            }
-            points
-        };
-        let several = self.shown.len() > 1;
-        let called = |signal: &Signal| match (several, name) {
-            (_, "") if several || !arguments.others.is_empty() => signal.text.clone(),
-            (_, "") => String::new(),
-            (true, name) => format!("{}, {name}", signal.text),
-            (false, name) => name.to_owned(),
-        };
-        let one = |signal: &Signal| Series { name: called(signal), points: pair(signal), mark: Mark::Line };
-        self.shown.iter().map(one).collect()
-    }
-
-    fn plot(&self, scene: &str, series: Vec<Series>, arguments: &PlotArguments) -> Plot {
-        let names: Vec<&str> = self.shown.iter().map(|signal| signal.text.as_str()).collect();
-        let unit = self.shown[0].unit();
-        let is_one_unit = self.shown.iter().all(|signal| signal.unit() == unit);
-        let what = with_unit(&names.join(", "), if is_one_unit { unit } else { "" });
-        let (across, what) = match (&self.order, &self.over) {
-            (Some(order), _) => (format!("order of {}", order.text), format!("amplitude of {what}")),
-            (None, Some(over)) => (with_unit(&over.text, over.unit()), what),
-            (None, None) if arguments.spectrum => ("frequency in Hz".to_owned(), format!("amplitude of {what}")),
-            (None, None) => ("t in s".to_owned(), what),
-        };
-        let is_path = self.over.as_ref().is_some_and(|over| is_one_unit && over.unit() == unit && !unit.is_empty());
-        let mut plot = Plot::new(&format!("{scene}: {}", names.join(", ")), &across, &what, series);
-        (plot.is_true_to_scale, plot.is_logarithmic) = (is_path, arguments.log);
-        plot
-    }
+/// The runs and measurements in CSV files, each by its file's name.
+pub fn others(paths: &[PathBuf], model: &'static Description) -> Result<Vec<(String, Recording)>, InputError> {
+    let one = |path: &PathBuf| {
+        let run = read_file_of(path, model.outputs.iter())?;
+        Ok((path.file_stem().map_or_else(String::new, |name| name.to_string_lossy().into_owned()), run))
+    };
+    paths.iter().map(one).collect()
 }

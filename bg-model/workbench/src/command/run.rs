@@ -11,11 +11,11 @@ use super::asked::Asked;
 use super::progress::{over_time, ticks};
 use super::report::Look;
 use super::sensitivity::observed;
-use super::{InputError, ended};
+use super::{InputError, ended, plot};
 use crate::ask::inputs::{self, Named};
 use crate::ask::machine::{Machine, MachineError};
 use crate::ask::parameters::{self, Chosen};
-use crate::ask::scenes::Scene;
+use crate::ask::scenes::{Scene, own_values};
 use crate::files::{console, whole};
 use crate::live::{Live, Order, changed};
 use crate::program::Program;
@@ -26,6 +26,7 @@ use crate::show::output::{Claimed, OutputError, Places};
 use crate::show::page::film::Film;
 use crate::show::page::{Parameter, Views};
 use crate::show::shown::{Exhibits, PageFiles};
+use crate::show::signals::Drawing;
 
 /// Runs and writes; `look` is what a report is to show beside the run, where one is wanted.
 pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>) -> Result<ExitCode, InputError> {
@@ -33,6 +34,7 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     let Recipe { integration, begin, .. } = &recipe;
     let inputs = inputs::named(&settings, program.models.graph().description.inputs);
     let outputs = observed(scene, &arguments.outputs, "--output")?;
+    let pictures = Pictures::of(program, scene, &chosen, arguments)?;
     let t0 = begin.time();
     let finest = program.extras.finest(integration.t_end);
     let request = Request { settled: program.extras.settled(), ..integration.request(t0, Some(finest))? };
@@ -61,6 +63,9 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     let claim = || Ok(places.claim()?);
     let machine = machine(program, scene, &chosen)?;
     let (mut outcome, views, claimed) = claimed_and_run(&*machine, request, begin, look, claim)?;
+    let (drawings, undrawn) = pictures.drawn(scene, &outcome.run.recording);
+    let shown = look.map_or(&[][..], |look| &look.drawings[..]).iter().cloned();
+    let drawings: Vec<(String, String)> = shown.chain(drawings).collect();
     if !arguments.outputs.is_empty() {
         keep(&mut outcome.run.recording, outputs.iter().map(|(_, output)| output.name));
     }
@@ -73,7 +78,8 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
         description: scene.description,
         scene: &about,
         parameters: &values,
-        drawings: look.map_or(&[], |look| &look.drawings),
+        others: &pictures.others,
+        drawings: &drawings,
         views: &views,
         live: live.as_ref(),
     };
@@ -81,8 +87,57 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
         Ok(faults) => faults.iter().map(ToString::to_string).collect(),
         Err(fault) => vec![fault.to_string()],
     };
+    faults.extend(undrawn);
     faults.extend(saved.and_then(Result::err));
     Ok(ended(faults.into_iter().chain(failure)))
+}
+
+/// What a page is to show beside the run's own charts and figures.
+struct Pictures {
+    /// Other runs and measurements, each with its name.
+    others: Vec<(String, Recording)>,
+    /// Pictures of signals, each with the text that asks for it.
+    drawings: Vec<(String, Drawing)>,
+    /// The values of the scene's own parameters.
+    own: Vec<f64>,
+}
+
+impl Pictures {
+    fn of(program: &Program, scene: &Scene, chosen: &Chosen, arguments: &RunArguments) -> Result<Self, InputError> {
+        let model = scene.description;
+        let others = plot::others(&arguments.others, model)?;
+        for (path, (_, run)) in arguments.others.iter().zip(&others) {
+            if !run.columns.iter().any(|column| model.outputs.iter().any(|output| output.name == column.name)) {
+                let fault = format!("{} has no column with the name of an output", path.display());
+                return Err(InputError::Unknown { option: "--with", fault });
+            }
+        }
+        let refused = |fault: String| InputError::Unknown { option: "--plot", fault };
+        let drawing = |text: &String| {
+            let drawing = Drawing::read(model, text).map_err(|fault| refused(format!("{text}: {fault}")))?;
+            Ok((text.clone(), drawing))
+        };
+        let drawings = arguments.plots.iter().map(drawing).collect::<Result<_, InputError>>()?;
+        let own = own_values(scene, &program.models.scenes, &chosen.values).map_err(|fault| refused(fault.to_string()));
+        let own = if arguments.plots.is_empty() { Vec::new() } else { own?.values().to_vec() };
+        Ok(Self { others, drawings, own })
+    }
+
+    /// The pictures of a run with their titles, and of those that cannot be drawn why not. Other runs are in those whose
+    /// columns they have.
+    fn drawn(&self, scene: &Scene, run: &Recording) -> (Vec<(String, String)>, Vec<String>) {
+        let (mut drawn, mut faults) = (Vec::new(), Vec::new());
+        for (text, drawing) in &self.drawings {
+            let others = self.others.iter().filter(|(_, other)| drawing.check(other).is_ok());
+            let others = others.map(|(name, other)| (name.as_str(), other));
+            let runs: Vec<(&str, &Recording)> = std::iter::once(("", run)).chain(others).collect();
+            match drawing.plot(&scene.name, &runs, &self.own).drawn() {
+                Ok(svg) => drawn.push((text.clone(), svg)),
+                Err(fault) => faults.push(format!("--plot {text}: {fault}")),
+            }
+        }
+        (drawn, faults)
+    }
 }
 
 /// The parameters and inputs that the arguments choose, and what is said of the inputs.
@@ -186,7 +241,12 @@ fn report(
         let page = written.page.as_ref().map_or_else(String::new, |page| format!("; open {page} there"));
         format!("{summary}\nwritten: {written}{page}\n")
     };
-    let printed = if spoken.is_aside { console::tell_aside(&text) } else { console::tell(&text) };
+    let printed = match spoken {
+        Spoken { is_aside: true, .. } => console::tell_aside(&text),
+        // It is asked for, whether the program is to be quiet or not.
+        Spoken { as_json: true, .. } => console::print(&text),
+        _ => console::tell(&text),
+    };
     written.faults.extend(printed.err().map(OutputError::from));
     Ok(written.faults)
 }

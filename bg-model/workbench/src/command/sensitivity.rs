@@ -17,7 +17,7 @@ use crate::ask::inputs;
 use crate::ask::machine::Machine;
 use crate::ask::parameters::{Chosen, nearest};
 use crate::ask::scenes::Scene;
-use crate::files::{FileError, RunFolder, console};
+use crate::files::{FileError, RunFolder, console, json};
 use crate::program::Program;
 use crate::run::summary::{longest_step, short};
 use crate::show::figures::FigureError;
@@ -60,6 +60,10 @@ pub struct SensitivityArguments {
     #[arg(long, value_name = "COUNT", default_value_t = 5)]
     pub most: usize,
 
+    /// Print what is found as JSON in place of the text
+    #[arg(long)]
+    pub json: bool,
+
     /// Folder for sensitivity.txt, sensitivity.csv, sensitivity_over_time.csv and sensitivity.svg; of one number for
     /// gradient.txt and gradient.csv
     #[arg(long, value_name = "DIR", default_value = "out/sensitivity")]
@@ -92,7 +96,8 @@ pub fn sensitivity(program: &Program, arguments: &SensitivityArguments) -> Resul
     let (written, faults) = write(folder, &scene.name, &found, (&all, &table), &question);
     let written =
         written.map_or_else(|| "nothing".to_owned(), |count| format!("{count} files in {}", arguments.out.display()));
-    let printed = console::tell(&format!("{told}\nwritten: {written}\n"));
+    let told = format!("{told}\nwritten: {written}\n");
+    let printed = console::tell_as(arguments.json, &told, || json::rows(&csv(&all)));
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
 }
 

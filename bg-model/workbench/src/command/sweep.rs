@@ -8,7 +8,7 @@ use clap::{Args, Subcommand};
 use super::progress::bar;
 use super::{InputError, ended, say};
 use crate::ask::parameters::number;
-use crate::files::{console, whole};
+use crate::files::{console, json, whole};
 use crate::program::Program;
 use crate::studies::sweep::folder::{Folder, Kind};
 use crate::studies::sweep::plan::Plan;
@@ -35,6 +35,10 @@ pub struct SweepArguments {
     /// Only every n-th file from the i-th on, for one of n processes that share the folder
     #[arg(long, value_name = "I/N")]
     shard: Option<String>,
+
+    /// Print what was done as JSON in place of the text, with the statistics of tolerances
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -56,7 +60,7 @@ enum SweepCommand {
 }
 
 pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, InputError> {
-    let SweepArguments { command, plan, out, threads, shard } = arguments;
+    let SweepArguments { command, plan, out, threads, shard, json } = arguments;
     if let Some(SweepCommand::Show { folder, csv, trajectories }) = command {
         let folder = Folder::open(folder).map_err(SweepError::from)?;
         let lines = shown::lines(&folder).map_err(SweepError::from)?;
@@ -87,13 +91,24 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
             // The last one of several processes draws what all have made.
             let has_all = (0..outcome.shards).all(|shard| folder.has(shard, !plan.wanted.trajectories.is_empty()));
             let told = if has_all { drawn::write(program, &folder)? } else { String::new() };
-            let told = format!("{told}{}", sentence(&outcome, &folder, &plan));
-            Ok(ended(console::tell(&told).err()))
+            let page = if has_all { format!("; open {} there", drawn::PAGE) } else { String::new() };
+            let told = format!("{told}{}{page}\n", sentence(&outcome, &folder, &plan));
+            Ok(ended(console::tell_as(*json, &told, || json_of(&outcome, &folder)).err()))
         }
         // What could be made is there.
         Err(fault @ SweepError::File(_)) => Ok(ended([fault])),
         Err(fault) => Err(fault.into()),
     }
+}
+
+/// What was done, for programs.
+fn json_of(outcome: &Outcome, folder: &Folder) -> serde_json::Value {
+    let Outcome { runs, made, found, made_runs, failed, .. } = *outcome;
+    let statistics = std::fs::read_to_string(folder.path().join(drawn::STATISTICS)).ok().map(|csv| json::rows(&csv));
+    serde_json::json!({
+        "folder": folder.path().display().to_string(), "runs": runs, "made": made_runs, "failed": failed, "files": made,
+        "found": found, "statistics": statistics,
+    })
 }
 
 /// What was done, and how to look at it.
@@ -109,6 +124,6 @@ fn sentence(outcome: &Outcome, folder: &Folder, plan: &Plan) -> String {
     let place = folder.path().display();
     format!(
         "sweep of {runs} runs: {part}{made} files made{before}; {made_runs} runs, {failed} of them failed\n\
-         {samples}written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table\n",
+         {samples}written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table",
     )
 }

@@ -23,12 +23,39 @@ pub fn is_quiet() -> bool {
     IS_QUIET.load(Relaxed)
 }
 
+/// Whether what is said is coloured: always, never, or on a terminal unless the environment has `NO_COLOR` (no-color.org).
+#[cfg(not(target_arch = "wasm32"))]
+pub fn set_colour(choice: clap::ColorChoice) {
+    let choice = match choice {
+        clap::ColorChoice::Auto => anstream::ColorChoice::Auto,
+        clap::ColorChoice::Always => anstream::ColorChoice::AlwaysAnsi,
+        clap::ColorChoice::Never => anstream::ColorChoice::Never,
+    };
+    choice.write_global();
+}
+
+/// Whether what is said on standard error is coloured.
+#[cfg(not(target_arch = "wasm32"))]
+#[must_use]
+pub fn is_coloured() -> bool {
+    anstream::AutoStream::choice(&stderr()) != anstream::ColorChoice::Never
+}
+
 /// Prints `text`, which tells of files that are written, to standard output, unless the program is to be quiet.
 ///
 /// # Errors
 /// As [`print()`].
 pub fn tell(text: &str) -> Result<(), FileError> {
     if is_quiet() { Ok(()) } else { print(text) }
+}
+
+/// What a command has found: `text`, as [`tell`] has it, or where JSON is asked for that, whether the program is to be quiet or
+/// not.
+///
+/// # Errors
+/// As [`print()`].
+pub fn tell_as(as_json: bool, text: &str, json: impl FnOnce() -> serde_json::Value) -> Result<(), FileError> {
+    if as_json { print(&format!("{:#}\n", json())) } else { tell(text) }
 }
 
 /// The same on standard error, where standard output has a result.

@@ -4,9 +4,13 @@
 //! file, [`console`] prints. What goes wrong is a [`FileError`]: one line with the place and, where there is one, what
 //! to do.
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod commit;
 pub mod console;
 mod folder;
 pub(crate) mod head;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod json;
 pub mod parquet;
 pub mod table;
 pub mod whole;
@@ -59,6 +63,7 @@ pub enum FileError {
 
 /// The CRC-32 of `bytes` in eight hexadecimal digits, by which files and values are told apart: it guards against
 /// mistakes, not against forgery.
-pub(crate) fn crc32(bytes: &[u8]) -> String {
+#[must_use]
+pub fn crc32(bytes: &[u8]) -> String {
     format!("{:08x}", rawzip::crc32(bytes))
 }

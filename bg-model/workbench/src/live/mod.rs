@@ -210,6 +210,7 @@ impl Made<'_> {
             run,
             rows: &rows,
             figures: &[],
+            others: &[],
             drawings: &[],
             views: &film.views(None),
             live: None,

@@ -39,6 +39,10 @@ pub(crate) struct Texts {
     pub about: String,
     /// The file that has the models, which comes after each command; none of a compiled program.
     pub file: Option<String>,
+    /// The same as results name it, without its folder, and the CRC-32 of its bytes; where they are known.
+    pub text: Option<(String, String)>,
+    /// The commit that the models are from, where it is known.
+    pub commit: Option<String>,
 }
 
 impl Program {
@@ -60,6 +64,8 @@ impl Program {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             about: own.description.doc.split_whitespace().collect::<Vec<_>>().join(" "),
             file: None,
+            text: None,
+            commit: None,
         };
         Self {
             texts,
@@ -97,6 +103,21 @@ impl Program {
     pub fn on_file(mut self, name: &str, file: &str) -> Self {
         name.clone_into(&mut self.texts.name);
         self.texts.file = Some(file.to_owned());
+        self
+    }
+
+    /// The commit that its models are from, for results to name: `option_env!("BG_COMMIT")` of a program that is built
+    /// with `BG_COMMIT=$(git rev-parse HEAD) cargo build`. Nothing leaves what is known.
+    #[must_use]
+    pub fn commit(mut self, commit: Option<&str>) -> Self {
+        self.texts.commit = commit.map(str::to_owned).or(self.texts.commit);
+        self
+    }
+
+    /// Its models are those of the text in the file `name`, whose bytes have this CRC-32, for results to name.
+    #[must_use]
+    pub fn of_text(mut self, name: &str, crc32: &str) -> Self {
+        self.texts.text = Some((name.to_owned(), crc32.to_owned()));
         self
     }
 

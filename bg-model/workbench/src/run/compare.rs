@@ -54,6 +54,17 @@ pub fn without_turns(difference: f64, turn: f64) -> f64 {
     if turn.is_finite() { difference - turn * (difference / turn).round() } else { difference }
 }
 
+/// The deviations for programs; a difference that is no number is null.
+#[must_use]
+pub fn json(a: &Recording, b: &Recording) -> serde_json::Value {
+    let one = |Deviation { name, unit, largest, time, magnitude }: &Deviation| {
+        serde_json::json!({
+            "output": name, "unit": unit, "largest_difference": largest, "t": time, "largest_value": magnitude
+        })
+    };
+    deviations(a, b).iter().map(one).collect()
+}
+
 /// The comparison of two runs called `names` as text.
 #[must_use]
 pub fn text(names: [&str; 2], a: &Recording, b: &Recording) -> String {

@@ -20,6 +20,16 @@ pub struct Quantity {
     pub unit: String,
 }
 
+/// The file of a model.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelFile {
+    /// Its name, without its folder.
+    pub name: String,
+    /// The CRC-32 of its bytes; files that it uses are not among them.
+    pub crc32: String,
+}
+
 /// What a run was made with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -30,6 +40,12 @@ pub struct Recipe {
     pub version: String,
     /// The version of the workbench and of what integrates.
     pub workbench: String,
+    /// The file that the model was read from; none of a compiled one. A file with other words for the same gives the same run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model_file: Option<ModelFile>,
+    /// The commit that the model is from, where it is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub commit: Option<String>,
     /// The CRC-32 of the model's equations and of the names of its outputs.
     pub model: String,
     /// The scene.
@@ -46,8 +62,19 @@ pub struct Recipe {
     pub begin: Begin,
 }
 
+impl Recipe {
+    /// What the model was read from, and the commit, in words; nothing where neither is known.
+    #[must_use]
+    pub fn origin(&self) -> Option<String> {
+        let file = self.model_file.as_ref().map(|ModelFile { name, crc32 }| format!("{name}, CRC-32 {crc32}"));
+        let commit = self.commit.as_ref().map(|commit| format!("commit {commit}"));
+        let known: Vec<String> = file.into_iter().chain(commit).collect();
+        (!known.is_empty()).then(|| known.join(", "))
+    }
+}
+
 #[cfg(not(target_arch = "wasm32"))]
-pub use read::{AgainError, fingerprint, input_files, read};
+pub use read::{AgainError, fingerprint, input_files, quantities, read};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod read {
@@ -56,11 +83,12 @@ mod read {
     use std::collections::BTreeMap;
     use std::path::{Path, PathBuf};
 
-    use bg_model::description::Description;
+    use bg_model::description::{Description, ParameterInfo};
     use thiserror::Error;
 
-    use super::Recipe;
+    use super::{Quantity, Recipe};
     use crate::ask::inputs::Named;
+    use crate::ask::parameters::Values;
     use crate::files::crc32;
 
     /// A run that cannot be made again.
@@ -77,6 +105,14 @@ mod read {
     pub fn fingerprint(model: &Description) -> String {
         let outputs = model.outputs.iter().map(|output| output.name);
         crc32(model.equations.iter().copied().chain(outputs).collect::<Vec<_>>().join("\n").as_bytes())
+    }
+
+    /// All parameters by their names.
+    pub fn quantities(values: &Values) -> BTreeMap<String, Quantity> {
+        let quantity = |(info, value): (&ParameterInfo, f64)| {
+            (info.name.to_owned(), Quantity { value, unit: info.unit.to_owned() })
+        };
+        values.all().map(quantity).collect()
     }
 
     /// The CRC-32 of the files that inputs are from, by the inputs' names.

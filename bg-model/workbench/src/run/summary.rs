@@ -281,6 +281,7 @@ impl Summary {
         if !self.program.is_empty() {
             lines.push(("program", self.program.clone()));
         }
+        lines.extend(self.recipe.as_ref().and_then(Recipe::origin).map(|origin| ("model", origin)));
         lines.extend(self.lines.iter().map(|(name, text)| (name.as_str(), text.clone())));
         lines
     }

@@ -12,6 +12,8 @@ pub mod sheet;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod shown;
 #[cfg(not(target_arch = "wasm32"))]
+pub mod signals;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod tables;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod trajectory;

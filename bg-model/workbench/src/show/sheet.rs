@@ -5,6 +5,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
+use super::figures::compact::compact;
 use super::markup::{escaped, with_code, write_into};
 
 /// What stands on a page.
@@ -44,7 +45,7 @@ fn add(page: &mut String, item: &Item) {
         Item::Table(head, rows) => table(page, head, rows),
         Item::Figure(caption, svg) => {
             // An image of its own each, so that their styles do not meet.
-            let data = STANDARD.encode(svg);
+            let data = STANDARD.encode(compact(svg));
             let caption = escaped(caption);
             write_into(
                 page,

@@ -40,6 +40,8 @@ pub struct Exhibits<'a> {
     pub scene: &'a str,
     /// The parameters of the mechanism with their values.
     pub parameters: &'a [Parameter],
+    /// Other runs and measurements, each with its name.
+    pub others: &'a [(String, Recording)],
     /// More drawings, each with its title: SVG texts.
     pub drawings: &'a [(String, String)],
     /// What is known beyond the run.
@@ -90,7 +92,7 @@ impl Page<'_> {
         let Self { exhibits, texts, figures, run, rows, .. } = self;
         let own: Vec<(Figure, String)> =
             figures.iter().filter(|(figure, _)| exhibits.is_own(figure)).cloned().collect();
-        let Exhibits { description, scene, parameters, drawings, views, live } = **exhibits;
+        let Exhibits { description, scene, parameters, others, drawings, views, live } = **exhibits;
         let figures = &own;
         page::page(&Report {
             texts,
@@ -101,6 +103,7 @@ impl Page<'_> {
             run,
             rows,
             figures,
+            others,
             drawings,
             views,
             live,

@@ -175,7 +175,9 @@ fn what_is_recorded_comes_out_again() {
     for part in [
         "\nmodel = \"Slide\"\nversion = ",
         "\nscene = \"fast\"\n\n[run]\nt_end = 1.0\nstep = 0.1\nmethod = \"rk4\"\nrtol = 1e-8\nfixed_step = 0.001\n\n\
-         [parameters]\nmass = 0.8\n\n[counts]\nsteps = 1000\nrejected = 0\n",
+         [parameters]\nmass = 0.8\n\n# All parameters as they were.",
+        "\n[values]\n\"k\" = { value = 50.0, unit = \"N/m\" }\n\"mass\" = { value = 0.8, unit = \"kg\" }\n",
+        "\"start\" = { value = 0.1, unit = \"m\" }\n\n[counts]\nsteps = 1000\nrejected = 0\n",
         "\nevents = 0\n\n[tolerances.\"m/s\"]\nrelative = 1e-9\nabsolute = 0.0\n",
     ] {
         assert!(toml.contains(part), "{part} is not in {toml}");
@@ -278,6 +280,13 @@ fn a_model_that_has_changed_is_told_in_all_its_differences() {
     assert_eq!(columns, ["x", "angle"]);
     assert!(texts.iter().any(|text| text.contains(" steps, recorded are ")), "{texts:?}");
     assert_eq!(deviating.recorded_by, None);
+    let changed = [
+        "`mass` is 2.5 kg, and was 2 kg when it was recorded",
+        "there is no parameter `start` any more; it was 0.1 m when it was recorded",
+    ];
+    assert_eq!(deviating.changed, changed);
+    let lines: Vec<String> = deviating.lines().collect();
+    assert_eq!(lines[lines.len() - 3..][..2], changed.map(|change| format!("literal: {change}")));
 }
 
 #[test]
@@ -322,7 +331,9 @@ fn a_run_that_can_no_longer_be_made_is_a_difference() {
     bench.edit("fast.toml", "mass = 3.0", "start = 0.2");
     let text = bench.fault::<now::Slide>();
     assert!(
-        text.starts_with("fast: scene `fast` keeps `start` fixed at 0.1 m; use --scene literal\nfast: if"),
+        text.starts_with(
+            "fast: scene `fast` keeps `start` fixed at 0.1 m; use --scene literal\nfast: `mass` is 2 kg, and was 3"
+        ),
         "{text}"
     );
 }

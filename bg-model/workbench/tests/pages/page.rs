@@ -11,6 +11,7 @@ use bg_model::description::{Description, ParameterInfo};
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::Parameters;
 use bg_model::run::Trajectory;
+use bg_model::simulation::{Column, Recording};
 use bg_workbench::extras::{Extras, Page, Plain};
 use bg_workbench::page::{Linearised, Parameter, Report, Views, glb, page};
 use bg_workbench::samples;
@@ -25,7 +26,7 @@ fn written(run: &Trajectory, rows: &[f64], texts: &Page, description: &'static D
         Parameter { info: info.clone(), value, source: "" }
     };
     let parameters: Vec<Parameter> = <DoublePendulum as Mechanism>::Parameters::table().iter().map(parameter).collect();
-    let (scene, parameters, summary) = ("", &parameters[..], &summary);
+    let (scene, parameters, summary, others) = ("", &parameters[..], &summary, &[measured()][..]);
     page(&Report {
         texts,
         description,
@@ -35,10 +36,20 @@ fn written(run: &Trajectory, rows: &[f64], texts: &Page, description: &'static D
         run,
         rows,
         figures: &[],
+        others,
         drawings: &[],
         views,
         live: None,
     })
+}
+
+/// A measurement of two outputs, and of what is none.
+fn measured() -> (String, Recording) {
+    let columns = ["upper_position_x", "upper_position_y", "weather"].map(|name| Column::new(name, "m"));
+    let mut run = Recording::new(columns.into());
+    run.push(0.25, [0.125, -0.5, 1.0]);
+    run.push(0.75, [0.25, -0.75, 2.0]);
+    ("measured".to_owned(), run)
 }
 
 fn double_pendulum(t_end: f64) -> (Trajectory, Vec<f64>, String) {
@@ -100,6 +111,17 @@ fn every_number_of_the_charts_is_the_csv_s() {
     let exact = run["lower_position_x"][between];
     let shown = value(&x["curves"][0]["values"], between);
     assert!(shown != exact && (shown - exact).abs() < 5e-6 * exact.abs(), "{shown} and {exact}");
+}
+
+#[test]
+fn a_measurement_stands_beside_the_outputs_of_its_names() {
+    let data = data(&double_pendulum(1.0).2);
+    let columns = serde_json::json!([
+        { "name": "upper_position_x", "values": [0.125, 0.25] },
+        { "name": "upper_position_y", "values": [-0.5, -0.75] },
+    ]);
+    let expected = serde_json::json!([{ "name": "measured", "times": [0.25, 0.75], "columns": columns }]);
+    assert_eq!(data["others"], expected);
 }
 
 #[test]
@@ -198,6 +220,15 @@ fn a_browser_shows_plays_and_scrubs() {
     assert!(csv[0].as_str().is_some_and(|head| head.starts_with("t [s],")), "{csv:?}");
     assert!(csv[1].as_str().is_some_and(|row| row.starts_with("0,") && row.split(',').count() > 1), "{csv:?}");
     assert_eq!(verdict["bond_charts"], 3);
+    // One scale on both axes, a dot at the time, the measurement beside the run.
+    let against = &verdict["against"];
+    assert_eq!(against["chosen"], serde_json::json!(["upper_position x", "upper_position y"]));
+    assert_eq!(against["paths"], 2, "the run and the measurement: {against}");
+    let place = |at: &str, axis: usize| number(&against[at][axis]);
+    let moved = |axis: usize| place("last", axis) - place("first", axis);
+    let way = |name: &str| run[name][last] - run[name][0];
+    let scales = [moved(0) / way("upper_position_x"), -moved(1) / way("upper_position_y")];
+    assert!(scales[0] > 100.0 && (scales[0] / scales[1] - 1.0).abs() < 1e-3, "{scales:?} {against}");
     let swing = &verdict["swing"];
     assert!(number(&swing["moved"]) >= 1e-3 && swing["pressed"] == "true", "a mode moves the machine: {swing}");
     assert!(number(&swing["back"]) < 1e-6, "setting the time ends that: {swing}");

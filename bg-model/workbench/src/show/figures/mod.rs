@@ -20,6 +20,8 @@ pub mod palette;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod panel;
 #[cfg(not(target_arch = "wasm32"))]
+pub mod parallel;
+#[cfg(not(target_arch = "wasm32"))]
 pub mod plot;
 #[cfg(not(target_arch = "wasm32"))]
 mod work_precision;

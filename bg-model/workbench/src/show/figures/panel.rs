@@ -59,6 +59,12 @@ impl Axis {
         Self { power: self.power.map(|sign| -sign), ..self }
     }
 
+    /// The numbers that get a tick.
+    #[must_use]
+    pub fn ticks(&self) -> &[f64] {
+        &self.ticks
+    }
+
     /// The number at a tick as text: the decimals that the distance of the ticks needs, and true minus signs.
     pub fn tick_label(&self, value: f64) -> String {
         if let Some(sign) = self.power {

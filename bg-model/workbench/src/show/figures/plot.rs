@@ -22,6 +22,8 @@ pub enum Mark {
     Dots,
     /// Both.
     Both,
+    /// A thin grey line with its name at its end, to read the others by.
+    Guide,
 }
 
 /// Points that belong together.
@@ -75,6 +77,15 @@ impl Plot {
         Self { heading, across, up, series, is_true_to_scale: false, is_logarithmic: false }
     }
 
+    /// The colour of a series: the hues in turn, which guides do not count among.
+    fn colour(&self, index: usize) -> RGBColor {
+        let is_guide = |series: &Series| series.mark == Mark::Guide;
+        if is_guide(&self.series[index]) {
+            return AXIS.light;
+        }
+        colour(self.series[..index].iter().filter(|series| !is_guide(series)).count())
+    }
+
     /// Draws it.
     ///
     /// # Errors
@@ -105,19 +116,28 @@ impl Plot {
             };
             let mut chart = chart(area, plot, horizontal, vertical, Some(&literally(&self.across)))?;
             for (index, (series, points)) in self.series.iter().zip(&all).enumerate() {
-                let colour = colour(index);
+                let colour = self.colour(index);
                 if series.mark != Mark::Dots {
                     let line = thinned(points, [&chart.x_range(), &chart.y_range()], plot);
-                    chart.draw_series([PathElement::new(line, colour.stroke_width(LINE))]).map_err(drawing)?;
+                    let width = if series.mark == Mark::Guide { LINE / 2 } else { LINE };
+                    chart.draw_series([PathElement::new(line, colour.stroke_width(width))]).map_err(drawing)?;
                 }
-                if series.mark != Mark::Line {
+                if matches!(series.mark, Mark::Dots | Mark::Both) {
                     let every = points.len().div_ceil(MOST).max(1);
                     let dot = |at: &(f64, f64)| Circle::new(*at, 5 * UNITS / 2, colour.mix(0.8).filled());
                     chart.draw_series(points.iter().step_by(every).map(dot)).map_err(drawing)?;
                 }
             }
+            for (guide, points) in self.series.iter().zip(&all).filter(|(series, _)| series.mark == Mark::Guide) {
+                let Some(end) = points.last() else { continue };
+                let (x, y) = chart.backend_coord(end);
+                let style = text(11, PENCIL.light, HPos::Right);
+                write(area, &literally(&guide.name), (x / UNITS - 6, y / UNITS - 15), &style)?;
+            }
             if has_legend {
-                legend(area, self.series.iter().map(|series| series.name.as_str()), plot)?;
+                let entry = |(index, series): (usize, &Series)| (series.name.clone(), self.colour(index));
+                let named = self.series.iter().enumerate().filter(|(_, series)| series.mark != Mark::Guide);
+                legend(area, named.map(entry), plot)?;
             }
             Ok(())
         })
@@ -160,14 +180,15 @@ fn to_scale(across: Range<f64>, up: Range<f64>, plot: Rectangle) -> (Range<f64>,
     (wide(across, plot.width), wide(up, plot.height))
 }
 
-fn legend<'a>(area: &Area, names: impl Iterator<Item = &'a str>, plot: Rectangle) -> Result<(), FigureError> {
-    let names = names.enumerate().filter(|(_, name)| !name.is_empty()).take(MOST_NAMES);
-    for (row, (index, name)) in names.enumerate() {
+/// Names in their colours beside a plot; those that are empty are not there.
+fn legend(area: &Area, names: impl Iterator<Item = (String, RGBColor)>, plot: Rectangle) -> Result<(), FigureError> {
+    let names = names.filter(|(name, _)| !name.is_empty()).take(MOST_NAMES);
+    for (row, (name, colour)) in names.enumerate() {
         let (x, y) = (plot.x + plot.width + 16, plot.y + ENTRY * row as i32);
         let middle = (y + ENTRY / 2) * UNITS;
         let ends = vec![(x * UNITS, middle), ((x + 18) * UNITS, middle)];
-        area.draw(&PathElement::new(ends, colour(index).stroke_width(2 * LINE))).map_err(drawing)?;
-        write(area, &literally(name), (x + 24, y + 2), &text(12, INK.light, HPos::Left))?;
+        area.draw(&PathElement::new(ends, colour.stroke_width(2 * LINE))).map_err(drawing)?;
+        write(area, &literally(&name), (x + 24, y + 2), &text(12, INK.light, HPos::Left))?;
     }
     Ok(())
 }
@@ -260,8 +281,7 @@ pub fn histogram(heading: &str, across: &str, values: &[f64], marks: &[(String, 
             let line = vec![(*at, 0.0), (*at, 1.08 * highest)];
             chart.draw_series([PathElement::new(line, colour(index + 1).stroke_width(2 * LINE))]).map_err(drawing)?;
         }
-        let names = std::iter::once("").chain(marks.iter().map(|(name, _)| name.as_str()));
-        legend(area, names, plot)
+        legend(area, marks.iter().enumerate().map(|(index, (name, _))| (name.clone(), colour(index + 1))), plot)
     })
 }
 
@@ -345,7 +365,7 @@ fn edges(values: &[f64]) -> Vec<f64> {
 }
 
 /// A colour from dark blue over green to yellow, of even steps in lightness.
-fn shade(part: f64) -> RGBColor {
+pub(super) fn shade(part: f64) -> RGBColor {
     const STOPS: [[f64; 3]; 5] =
         [[25.0, 36.0, 92.0], [28.0, 92.0, 128.0], [44.0, 143.0, 122.0], [132.0, 190.0, 92.0], [249.0, 226.0, 92.0]];
     let place = part.clamp(0.0, 1.0) * (STOPS.len() - 1) as f64;

@@ -24,7 +24,7 @@ const SCALE: f64 = 20.0;
 /// The most scalars in a chart.
 const MOST: usize = 4;
 
-/// The charts of all outputs, in the order of the outputs.
+/// The charts of all outputs, in the order of the outputs; matrices after all others.
 pub fn charts(description: &'static Description, run: &Recording) -> Vec<Chart<'static>> {
     let mut charts: Vec<(Chart, f64)> = Vec::new();
     for quantity in quantities(description) {
@@ -44,7 +44,9 @@ pub fn charts(description: &'static Description, run: &Recording) -> Vec<Chart<'
             None => charts.push((of_quantity(&quantity, unit), span)),
         }
     }
-    charts.into_iter().map(|(chart, _)| chart).collect()
+    let mut charts: Vec<Chart<'_>> = charts.into_iter().map(|(chart, _)| chart).collect();
+    charts.sort_by_key(|chart| chart.curves.len() > MOST);
+    charts
 }
 
 fn of_quantity(quantity: &[&'static OutputInfo], unit: String) -> Chart<'static> {

@@ -24,6 +24,8 @@ pub struct Data {
     /// When switches changed their branches, s.
     pub events: Vec<f64>,
     pub charts: Vec<Chart>,
+    /// Other runs and measurements, for the same charts.
+    pub others: Vec<Other>,
     /// Energies, and what is left over.
     pub balance: Vec<Chart>,
     pub animation: Option<Motion>,
@@ -44,6 +46,20 @@ pub struct Curve {
     #[serde(skip_serializing_if = "str::is_empty")]
     pub column: &'static str,
     pub values: Series,
+}
+
+/// Columns of another run or a measurement, at their own times.
+#[derive(Debug, Serialize)]
+pub struct Other {
+    name: String,
+    times: Vec<f64>,
+    columns: Vec<OtherColumn>,
+}
+
+#[derive(Debug, Serialize)]
+struct OtherColumn {
+    name: String,
+    values: Series,
 }
 
 #[derive(Debug, Serialize)]
@@ -145,10 +161,31 @@ impl Data {
             rows: (0..samples.len()).filter(|&k| samples[k].is_row).collect(),
             events: run.events.iter().map(|&t| rounded(t, DIGITS)).collect(),
             charts: charts.collect(),
+            others: Vec::new(),
             balance: Balance::of(description, run).map_or_else(Vec::new, |balance| of_balance(&balance, &samples)),
             animation: animation.map(|animation| Motion::new(animation, rows)),
             modes,
         }
+    }
+
+    /// The same with what other runs and measurements have of the charts' columns, at samples that are few enough.
+    pub fn with(mut self, others: &[(String, Recording)]) -> Self {
+        let shown: Vec<&str> =
+            self.charts.iter().flat_map(|chart| chart.curves.iter().map(|curve| curve.column)).collect();
+        let other = |(name, run): &(String, Recording)| {
+            let columns = || run.columns.iter().filter(|column| shown.contains(&column.name.as_str()));
+            let samples = instants(&run.times, &[], columns().count(), MOST_OF_CHARTS);
+            let values = |column: &[f64]| Series::rounded(samples.iter().map(|sample| column[sample.index]), DIGITS);
+            Other {
+                name: name.clone(),
+                times: samples.iter().map(|sample| run.times[sample.index]).collect(),
+                columns: columns()
+                    .map(|column| OtherColumn { name: column.name.clone(), values: values(&column.values) })
+                    .collect(),
+            }
+        };
+        self.others = others.iter().map(other).collect();
+        self
     }
 
     /// Which of `all` samples the charts show, and of the `of_csv` rows of the CSV file, in words.

@@ -56,6 +56,11 @@ pub fn stage(page: &mut String, is_moving: bool, is_live: bool, note: &str) {
     );
 }
 
+/// One output against another, which the script draws.
+pub fn against(page: &mut String) {
+    *page += "<section id=\"against\"><h2>Output against output</h2></section>\n";
+}
+
 /// The energy balance, whose chart the script draws.
 pub fn balance(page: &mut String, balance: &Balance) {
     let sentence = escaped(&balance.sentence());

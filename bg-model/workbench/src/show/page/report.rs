@@ -57,6 +57,8 @@ pub struct Report<'a> {
     pub rows: &'a [f64],
     /// The program's own figures, drawn: what they show is not in the charts.
     pub figures: &'a [(Figure, String)],
+    /// Other runs and measurements in the same charts, each with its name.
+    pub others: &'a [(String, Recording)],
     /// More drawings, each with its title: SVG texts.
     pub drawings: &'a [(String, String)],
     /// What is known beyond the run.
@@ -110,7 +112,8 @@ fn put_together(
     let at_rest = modes.zip(animation).and_then(|(modes, _)| Some((modes, modes.rest.as_ref()?)));
     let swings = at_rest.map(|(modes, rest)| Modes::new(&modes.modes, rest));
     let can_swing = swings.is_some();
-    let data = Data::new(report.description, report.run, report.rows, animation, swings);
+    let data = Data::new(report.description, report.run, report.rows, animation, swings).with(report.others);
+    let has_pairs = data.charts.iter().map(|chart| chart.curves.len()).sum::<usize>() > 1;
     let balance = Balance::of(report.description, report.run);
     let drawings = drawings(report);
     let heading = if report.figures.is_empty() { "Drawings" } else { &report.texts.gallery };
@@ -119,6 +122,7 @@ fn put_together(
         (animation.is_some(), "machine", "Machine"),
         (order.is_some(), "controls", "Try other values"),
         (true, "charts", "Outputs"),
+        (has_pairs, "against", "Output against output"),
         (picture.is_some(), "picture", "Bond graph"),
         (balance.is_some(), "balance", "Energy balance"),
         (modes.is_some() || no_modes.is_some(), "modes", "Modes"),
@@ -138,6 +142,9 @@ fn put_together(
     html::head(&mut page, report, &links);
     page += "<main>\n";
     html::stage(&mut page, animation.is_some(), order.is_some(), &data.note(report.run.times.len(), report.rows.len()));
+    if has_pairs {
+        html::against(&mut page);
+    }
     if let Some(picture) = picture {
         html::picture(&mut page, &picture.svg);
     }

@@ -3,6 +3,7 @@
 //! In: a folder of golden outputs and the mechanism of now. Out: for each of them that it is as recorded, or what
 //! differs and the command that records it anew.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 
@@ -12,7 +13,9 @@ use super::difference::{Difference, Judged, differences};
 use super::file::{Golden, list};
 use super::run::Prepared;
 use super::{GoldenError, VERSION, renewal, size};
+use crate::ask::parameters::{Values, number};
 use crate::program::Program;
+use crate::run::recipe::{Quantity, quantities};
 
 /// A golden output that is as recorded. Shown, it is one line.
 #[derive(Clone, Debug)]
@@ -22,6 +25,14 @@ pub struct Agreement {
     size: String,
     /// The column that is farthest off in units of its tolerance.
     farthest: Option<Judged>,
+}
+
+impl Agreement {
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
 }
 
 impl fmt::Display for Agreement {
@@ -47,6 +58,8 @@ pub struct Deviating {
     pub name: String,
     /// What differs.
     pub differences: Vec<Difference>,
+    /// The parameters that have other values than then, or other units, as `name = value unit, recorded with value unit`.
+    pub changed: Vec<String>,
     /// The version of the workbench that recorded it, where that is not this one.
     pub recorded_by: Option<String>,
     /// The command that records it anew.
@@ -56,10 +69,11 @@ pub struct Deviating {
 impl Deviating {
     /// The lines that it is shown as.
     pub fn lines(&self) -> impl Iterator<Item = String> {
-        let Self { name, differences, recorded_by, renewal } = self;
+        let Self { name, differences, changed, recorded_by, renewal } = self;
         let by = recorded_by.as_ref().map(|version| format!("recorded by version {version}, this is {VERSION}; "));
         let last = format!("{name}: {}if this change is intended, record it again: {renewal}", by.unwrap_or_default());
-        differences.iter().map(move |difference| format!("{name}: {difference}")).chain(std::iter::once(last))
+        let differences = differences.iter().map(move |difference| format!("{name}: {difference}"));
+        differences.chain(changed.iter().map(move |change| format!("{name}: {change}"))).chain(std::iter::once(last))
     }
 }
 
@@ -97,7 +111,23 @@ pub(crate) fn check_one(program: &Program, prepared: &Prepared<'_>) -> Result<Ag
     }
     let recorded_by = (record.version != VERSION).then(|| record.version.clone());
     let renewal = renewal::command(&program.texts.name, &prepared.golden, &prepared.parameters);
-    Err(Box::new(Deviating { name, differences, recorded_by, renewal }))
+    let changed = changed(&record.values, &prepared.parameters);
+    Err(Box::new(Deviating { name, differences, changed, recorded_by, renewal }))
+}
+
+/// What has become of the parameters since then: a default that has changed, or one that is not there any more.
+fn changed(recorded: &BTreeMap<String, Quantity>, values: &Values) -> Vec<String> {
+    let now = quantities(values);
+    let text = |Quantity { value, unit }: &Quantity| {
+        let gap = if unit.is_empty() { "" } else { " " };
+        format!("{}{gap}{unit}", number(*value))
+    };
+    let one = |(name, then): (&String, &Quantity)| match now.get(name) {
+        Some(now) if now == then => None,
+        Some(now) => Some(format!("`{name}` is {}, and was {} when it was recorded", text(now), text(then))),
+        None => Some(format!("there is no parameter `{name}` any more; it was {} when it was recorded", text(then))),
+    };
+    recorded.iter().filter_map(one).collect()
 }
 
 /// Runs again what is recorded in `folder` of the mechanism `Me` and looks whether the same comes out: columns,

@@ -14,6 +14,7 @@ use super::GoldenError;
 use super::counts::Counts;
 use crate::ask::parameters::{one_line, place_of};
 use crate::ask::request::Integration;
+use crate::run::recipe::Quantity;
 use crate::run::samples;
 
 /// How far values of a unit may be off: `relative` times the largest recorded value of the unit, plus `absolute`.
@@ -65,6 +66,9 @@ pub struct Record {
     pub model: String,
     /// The version of the workbench that recorded it.
     pub version: String,
+    /// The commit that the model was from, where it was known.
+    #[serde(default)]
+    pub commit: Option<String>,
     /// The scene, by its name on the command line.
     pub scene: String,
     /// The inputs that are set, as `--input` takes them; files are seen from where the program is started.
@@ -78,6 +82,9 @@ pub struct Record {
     /// The parameters that are not at their defaults.
     #[serde(default)]
     pub parameters: BTreeMap<String, f64>,
+    /// All parameters of the graph as they were then; a run follows the defaults of now.
+    #[serde(default)]
+    pub values: BTreeMap<String, Quantity>,
     /// What the run took.
     pub counts: Counts,
     /// How far its values may be off.
@@ -87,9 +94,12 @@ pub struct Record {
 impl Record {
     /// The text of NAME.toml. Numbers have the shortest form that reads back to the same bits.
     pub(super) fn text(&self) -> Result<String, toml::ser::Error> {
-        let Self { model, version, scene, inputs, input_files, run, parameters, counts, tolerances } = self;
+        let Self { model, version, commit, scene, inputs, input_files, run, parameters, values, counts, tolerances } =
+            self;
         let Integration { t_end, step, method, rtol, atol, fixed_step } = run;
-        let mut text = format!("{HEAD}model = {model:?}\nversion = {version:?}\nscene = {scene:?}\n");
+        let mut text = format!("{HEAD}model = {model:?}\nversion = {version:?}\n");
+        text += &commit.as_ref().map(|commit| format!("commit = {commit:?}\n")).unwrap_or_default();
+        text += &format!("scene = {scene:?}\n");
         if !inputs.is_empty() {
             text += &format!("inputs = {inputs:?}\n");
         }
@@ -108,6 +118,12 @@ impl Record {
         }
         for (name, value) in parameters {
             text += &format!("{name} = {value:?}\n");
+        }
+        if !values.is_empty() {
+            text += "\n# All parameters as they were. A later run has the defaults of its time, and those of [parameters].\n[values]\n";
+        }
+        for (name, Quantity { value, unit }) in values {
+            text += &format!("{name:?} = {{ value = {value:?}, unit = {unit:?} }}\n");
         }
         text += &format!("\n[counts]\n{}", toml::to_string(counts)?);
         for (unit, Tolerance { relative, absolute }) in tolerances {
@@ -229,16 +245,23 @@ mod tests {
         let record = Record {
             model: "Slide".to_owned(),
             version: "0.1.0".to_owned(),
+            commit: Some("0123".to_owned()),
             scene: "fast".to_owned(),
             inputs: vec!["force=cubic:load.csv".to_owned()],
             input_files: [("force".to_owned(), "00c0ffee".to_owned())].into(),
             parameters: values.map(|(index, value)| (format!("p_{index}"), value)).collect(),
+            values: [("wagon[0].k".to_owned(), Quantity { value: 0.1, unit: "N/m".to_owned() })].into(),
             run: run.clone(),
             counts,
             tolerances: tolerances.into(),
         };
-        let without =
-            Record { parameters: BTreeMap::new(), run: Integration { atol: Some(1e-12), ..run }, ..record.clone() };
+        let without = Record {
+            parameters: BTreeMap::new(),
+            values: BTreeMap::new(),
+            commit: None,
+            run: Integration { atol: Some(1e-12), ..run },
+            ..record.clone()
+        };
         for record in [record, without] {
             assert_eq!(toml::from_str(&record.text().unwrap()), Ok(record));
         }

@@ -15,7 +15,7 @@ use crate::ask::inputs::Named;
 use crate::ask::parameters::Values;
 use crate::ask::request::Integration;
 use crate::files::{FileError, check_is_no_file, whole};
-use crate::run::recipe::input_files;
+use crate::run::recipe::{input_files, quantities};
 
 /// A place for a golden output, which can be written.
 #[derive(Debug)]
@@ -49,11 +49,11 @@ impl Place {
         Ok(Self { files, model, known })
     }
 
-    /// Writes `run`, which is what `scene` gives when it is integrated so with these inputs and parameters. Gives one
-    /// line on what is recorded.
+    /// Writes `run`, which is what `scene`, of this commit, gives when it is integrated so with these inputs and parameters.
+    /// Gives one line on what is recorded.
     pub fn write(
         self,
-        scene: &str,
+        (scene, commit): (&str, Option<&str>),
         (inputs, named): (&[String], &[Named]),
         integration: Integration,
         parameters: &Values,
@@ -62,11 +62,13 @@ impl Place {
         let record = Record {
             model: self.model.to_owned(),
             version: VERSION.to_owned(),
+            commit: commit.map(str::to_owned),
             scene: scene.to_owned(),
             inputs: inputs.to_vec(),
             input_files: input_files(named),
             run: integration,
             parameters: parameters.changed().map(|(info, value)| (info.name.to_owned(), value)).collect(),
+            values: quantities(parameters),
             counts: Counts::from(&run.statistics),
             tolerances: tolerances(&run.columns, &self.known),
         };

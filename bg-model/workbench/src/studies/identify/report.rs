@@ -5,6 +5,9 @@
 
 use bg_model::description::OutputInfo;
 
+use bg_analysis::identify::Estimate;
+use serde_json::{Value, json};
+
 use super::{Column, Data, Identified, Left, Measured, NoNoise};
 use crate::files::table::{aligned, table};
 
@@ -51,6 +54,38 @@ pub fn text(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> 
         text += &format!("columns that measure no output asked for: {}\n", data.ignored.join(", "));
     }
     text
+}
+
+/// The same for programs. What is not known is null.
+#[must_use]
+pub fn json(found: &Identified, data: &Data, outputs: &'static [OutputInfo]) -> Value {
+    let parameter = |estimate: &Estimate| {
+        let Estimate { variable, value, interval, is_held } = estimate;
+        json!({
+            "name": variable.info.name, "unit": variable.info.unit, "value": value, "interval": interval,
+            "start": variable.start, "at_bound": is_held,
+        })
+    };
+    let column = |(column, measured): (&Column, &Measured)| {
+        let Left { size, spread, correlation, lag, fault } = &column.left;
+        let output = &outputs[column.output];
+        json!({
+            "column": measured.name, "output": output.name, "unit": output.unit, "left": size, "spread": spread,
+            "correlation": correlation, "lag": lag, "is_noise": fault.is_none(),
+        })
+    };
+    let rows = found.correlations.row_iter();
+    json!({
+        "converged": found.has_converged,
+        "leaves_noise": found.leaves_noise(),
+        "parameters": found.estimates.iter().map(parameter).collect::<Vec<_>>(),
+        "correlations": rows.map(|row| row.iter().copied().collect::<Vec<f64>>()).collect::<Vec<_>>(),
+        "undetermined": found.undetermined,
+        "columns": found.columns.iter().zip(&data.columns).map(column).collect::<Vec<_>>(),
+        "runs": found.evaluations,
+        "runs_with_derivatives": found.derivatives,
+        "starts": found.starts,
+    })
 }
 
 fn parameters(found: &Identified) -> String {

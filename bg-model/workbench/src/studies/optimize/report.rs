@@ -62,13 +62,20 @@ fn counted(count: usize, one: &str) -> String {
 /// In a sentence how a search has ended.
 fn ended(minimum: &Minimum) -> String {
     let fault = minimum.fault.as_ref().map_or_else(String::new, |fault| format!(": {fault}"));
-    match minimum.end {
+    let end = match minimum.end {
         End::Converged if minimum.is_feasible() => "converged".to_owned(),
         End::Converged => "converged where the requirements are missed least".to_owned(),
         End::Steps => "not converged: as many steps as are allowed; allow more with --steps".to_owned(),
         End::NoStep => format!("ended where no step helps{fault}"),
         End::NoDerivatives => format!("ended where there are no derivatives{fault}"),
         End::Stopped => "stopped".to_owned(),
+    };
+    match minimum.hops {
+        0 => end,
+        1 => format!("{end}, once from a better run farther away: there are several minima"),
+        hops => {
+            format!("{end}, {hops} times from a better run farther away: there are many minima; --starts 8 sees more")
+        }
     }
 }
 
@@ -292,6 +299,7 @@ pub fn json(sought: &Sought, found: &Optimum) -> Value {
             "feasible": of.is_feasible(),
             "converged": of.end == End::Converged,
             "end": ended(of),
+            "hops": of.hops,
             "runs": of.trials.len(),
             "runs_with_derivatives": of.sloped,
         })

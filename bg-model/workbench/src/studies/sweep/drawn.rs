@@ -2,7 +2,7 @@
 //! and which parameter spreads them.
 //!
 //! In: a program, the folder of a sweep. Out: `index.html`, and of tolerances `statistics.csv` and a text. Lines over one
-//! parameter, maps over two, dots over each of more; histograms and ranked bars of tolerances, beside what derivatives at
+//! parameter, maps over two, parallel axes and dots over more; histograms and ranked bars of tolerances, beside what derivatives at
 //! the means say to first order.
 
 use std::path::Path;
@@ -22,6 +22,7 @@ use crate::files::table::table;
 use crate::files::whole;
 use crate::program::Program;
 use crate::show::figures::FigureError;
+use crate::show::figures::parallel::{Column as Parallel, parallel};
 use crate::show::figures::plot::{Bar, Map, Mark, Plot, Series, bars, histogram, with_unit};
 use crate::show::sheet::{Item, sheet};
 
@@ -46,6 +47,10 @@ struct Column {
 impl Column {
     fn head(&self) -> String {
         with_unit(&self.name, &self.unit)
+    }
+
+    fn parallel(&self) -> Parallel<'_> {
+        Parallel { name: &self.name, unit: &self.unit, values: &self.values }
     }
 }
 
@@ -395,8 +400,19 @@ fn map(axes: &[Vec<f64>], [a, b]: [usize; 2], swept: &[Column], number: &Column)
     figure(&caption, Map { heading: caption.clone(), captions, across, up, values }.drawn())
 }
 
-/// Each number over each parameter, a dot for each run.
+/// Of more than two parameters each number on parallel axes, a line for each run; then each number over each parameter, a dot
+/// for each run.
 fn scattered(swept: &[Column], numbers: &[Column]) -> Vec<Item> {
+    let on_axes = |number: &Column| {
+        let names = swept.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
+        let caption = format!("{} of each run by {names}, in the colour of {}", number.name, number.name);
+        let columns: Vec<Parallel<'_>> = swept.iter().chain([number]).map(Column::parallel).collect();
+        figure(&caption, parallel(&format!("{} on parallel axes", number.name), &columns))
+    };
+    let mut items: Vec<Item> = Vec::new();
+    if swept.len() > 2 {
+        items.extend(numbers.iter().take(MOST).filter_map(on_axes));
+    }
     let every = numbers.first().map_or(1, |number| number.values.len().div_ceil(MOST_RUNS)).max(1);
     let pairs = numbers.iter().take(MOST).flat_map(|number| swept.iter().map(move |across| (number, across)));
     let one = |(number, across): (&Column, &Column)| {
@@ -405,5 +421,6 @@ fn scattered(swept: &[Column], numbers: &[Column]) -> Vec<Item> {
         let caption = format!("{} over {}", number.name, across.name);
         figure(&caption, Plot::new(&caption, &across.head(), &number.head(), series).drawn())
     };
-    pairs.take(2 * MOST).filter_map(one).collect()
+    items.extend(pairs.take(2 * MOST).filter_map(one));
+    items
 }

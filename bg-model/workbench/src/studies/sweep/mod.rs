@@ -18,6 +18,7 @@
 //! | [`statistics`] | how a number is spread, and which parameter spreads it |
 //! | [`drawn`] | what a sweep looks like: a page |
 
+pub mod campbell;
 pub mod design;
 pub mod distribution;
 pub mod drawn;
