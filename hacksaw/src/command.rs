@@ -22,7 +22,7 @@ use crate::{checks, sources, summary};
 /// The program.
 #[must_use]
 pub fn program() -> Program {
-    let program = Program::of::<Hacksaw>();
+    let program = Program::of::<Hacksaw>().commit(option_env!("BG_COMMIT"));
     #[cfg(not(target_arch = "wasm32"))]
     let program = program.with_cases(case::cases(), &["paper", "full-offset", "rigid"]);
     program

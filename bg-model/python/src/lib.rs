@@ -41,15 +41,13 @@ macro_rules! python_module {
 ///
 /// # Errors
 /// Python's.
-pub fn fill(
-    module: &Bound<'_, PyModule>,
-    program: impl Fn() -> Program + Send + Sync + 'static,
-) -> PyResult<()> {
+pub fn fill(module: &Bound<'_, PyModule>, program: impl Fn() -> Program + Send + Sync + 'static) -> PyResult<()> {
     let model = Bound::new(module.py(), model::Model::new(program))?;
     for name in model::FUNCTIONS {
         module.add(name, model.getattr(name)?)?;
     }
     module.add_class::<table::Table>()?;
+    module.add_class::<model::Picture>()?;
     module.add("RunFailed", module.py().get_type::<model::RunFailed>())?;
     module.add("__doc__", model.getattr("about")?)?;
     module.add("__version__", model.getattr("version")?)

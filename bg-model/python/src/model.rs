@@ -8,11 +8,13 @@ use std::path::{Path, PathBuf};
 use bg_model::nalgebra::DMatrix;
 use bg_workbench::Program;
 use bg_workbench::calls::{self, Asked, Ran, Started};
+use bg_workbench::files::parquet;
 use bg_workbench::inputs::Named;
+use bg_workbench::linear::{Branch, Mode};
 use bg_workbench::optimize;
+use bg_workbench::sweep::campbell::{Campbell, Critical};
 use bg_workbench::sweep::folder::{Folder, Kind};
 use bg_workbench::sweep::plan::Plan;
-use bg_workbench::files::parquet;
 use bg_workbench::sweep::{Outcome, Share, recipe, shown, sweep};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -30,9 +32,11 @@ pyo3::create_exception!(
 );
 
 /// The functions that a module has.
-pub const FUNCTIONS: [&str; 10] = [
+pub const FUNCTIONS: [&str; 12] = [
     "run",
+    "plot",
     "linearize",
+    "campbell",
     "sensitivity",
     "optimize",
     "parameters",
@@ -190,6 +194,72 @@ impl Model {
         }
     }
 
+    /// Run the model and draw a picture of it: "v over x", "spectrum of x", "orders of torque over crank.angle", or a signal
+    /// over time; ", 2.." at its end leaves the first 2 s out.
+    ///
+    /// `others` are CSV files of other runs or measurements, drawn beside it. Gives a picture, which a notebook shows: its SVG is
+    /// `svg`, and `save(path)` writes it. Raises ValueError where it cannot be drawn.
+    #[pyo3(signature = (picture, scene=None, *, others=None, t_end=None, step=None, method=None, rtol=None, atol=None, start="model", inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn plot(
+        &self,
+        py: Python<'_>,
+        picture: &str,
+        scene: Option<String>,
+        others: Option<Vec<PathBuf>>,
+        t_end: Option<f64>,
+        step: Option<f64>,
+        method: Option<&str>,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        start: &str,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<Picture> {
+        let mut asked = asked(scene, set, inputs, start, parameters)?;
+        integrated(&mut asked, t_end, step, method, rtol, atol)?;
+        let others = others.unwrap_or_default();
+        let svg = interruptible(py, |_| calls::plot(&(self.program)(), &asked, picture, &others))?.map_err(refused)?;
+        Ok(Picture { svg })
+    }
+
+    /// Follow natural frequencies over a parameter, "speed=0..12000": a Campbell diagram.
+    ///
+    /// Modes are those about the model's start, at `points` values; `start="equilibrium"` takes the machine at rest, `at` where
+    /// its run is, s. Gives a dict: `modes`, a table with a row for each mode at each value, `critical_speeds`, a table of where
+    /// the `orders` of a speed meet modes, and `picture`. Raises ValueError where there are none.
+    #[pyo3(signature = (by, scene=None, *, points=61, orders=None, at=None, start="model", inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn campbell<'py>(
+        &self,
+        py: Python<'py>,
+        by: &str,
+        scene: Option<String>,
+        points: usize,
+        orders: Option<Vec<f64>>,
+        at: Option<f64>,
+        start: &str,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let asked = asked(scene, set, inputs, start, parameters)?;
+        let found = interruptible(py, |_| {
+            let program = (self.program)();
+            let found = calls::campbell(&program, &asked, by, points, orders.as_deref(), at)?;
+            let scene = asked.scene.clone().unwrap_or_default();
+            Ok::<_, calls::Refused>((found.drawn(&scene), found))
+        });
+        let (drawn, found) = found?.map_err(refused)?;
+        let all = PyDict::new(py);
+        all.set_item("modes", modes(py, &found)?)?;
+        all.set_item("critical_speeds", critical_speeds(py, &found)?)?;
+        // No mode swings where one could be drawn.
+        all.set_item("picture", drawn.ok().map(|svg| Bound::new(py, Picture { svg })).transpose()?)?;
+        Ok(all)
+    }
+
     /// Linearise where the run is at `at` s, or at the equilibrium near the start.
     ///
     /// Gives a dict: the matrices `a`, `b`, `c`, `d`, names with units of `states`, `inputs`, `outputs`, the `modes`
@@ -337,8 +407,7 @@ impl Model {
             || PyValueError::new_err(format!("shard {shard:?}: give (i, n), the i-th of n parts, counted from 1"));
         let share = Share::new(shard.0, shard.1).ok_or_else(none)?;
         let work = Work { plan: source(plan)?, out, share, threads };
-        let outcome =
-            interruptible(py, |goes_on| work.done(&(self.program)(), goes_on))?.map_err(refused)?;
+        let outcome = interruptible(py, |goes_on| work.done(&(self.program)(), goes_on))?.map_err(refused)?;
         let counts = PyDict::new(py);
         counts.set_item("runs", outcome.runs)?;
         counts.set_item("made", outcome.made_runs)?;
@@ -369,6 +438,70 @@ impl Model {
         info.set_item("sweep", recipe)?;
         of_parquet(py, table, info)
     }
+}
+
+/// A picture, which a notebook shows.
+#[pyclass(frozen)]
+pub struct Picture {
+    /// The picture as SVG.
+    #[pyo3(get)]
+    svg: String,
+}
+
+#[pymethods]
+impl Picture {
+    /// What a notebook shows.
+    fn _repr_svg_(&self) -> &str {
+        &self.svg
+    }
+
+    /// Write it into a file.
+    fn save(&self, path: PathBuf) -> PyResult<()> {
+        Ok(std::fs::write(path, &self.svg)?)
+    }
+}
+
+/// The modes that swing: a row for each at each value of the parameter.
+fn modes(py: Python<'_>, found: &Campbell) -> PyResult<Table> {
+    let points = || {
+        let of = |(place, branch): (usize, &Branch)| {
+            let place = i64::try_from(place + 1).unwrap_or(i64::MAX);
+            branch.points.iter().map(move |(value, mode)| (place, *value, mode.clone())).collect::<Vec<_>>()
+        };
+        found.branches.iter().enumerate().flat_map(of)
+    };
+    let real = |of: fn(&Mode) -> f64| Values::Real(points().map(|(.., mode)| of(&mode)).collect());
+    let by = found.asked.by;
+    let columns = [
+        ("mode", "", Values::Whole(points().map(|(place, ..)| place).collect())),
+        (by.name, by.unit, Values::Real(points().map(|(_, value, _)| value).collect())),
+        ("frequency", "Hz", real(|mode| mode.frequency)),
+        ("damping", "", real(|mode| mode.damping.unwrap_or(f64::NAN))),
+        ("real", "1/s", real(|mode| mode.real)),
+        ("imaginary", "rad/s", real(|mode| mode.imaginary)),
+        ("words", "", Values::Text(points().map(|(.., mode)| mode.words).collect())),
+    ];
+    named_columns(py, columns)
+}
+
+/// Where orders meet modes.
+fn critical_speeds(py: Python<'_>, found: &Campbell) -> PyResult<Table> {
+    let real = |of: fn(&Critical) -> f64| Values::Real(found.criticals.iter().map(of).collect());
+    let by = found.asked.by;
+    let place = |critical: &Critical| i64::try_from(critical.branch + 1).unwrap_or(i64::MAX);
+    let columns = [
+        ("order", "", real(|critical| critical.order)),
+        (by.name, by.unit, real(|critical| critical.value)),
+        ("frequency", "Hz", real(|critical| critical.mode.frequency)),
+        ("damping", "", real(|critical| critical.mode.damping.unwrap_or(f64::NAN))),
+        ("mode", "", Values::Whole(found.criticals.iter().map(place).collect())),
+    ];
+    named_columns(py, columns)
+}
+
+fn named_columns<const K: usize>(py: Python<'_>, columns: [(&str, &str, Values); K]) -> PyResult<Table> {
+    let columns = columns.into_iter().map(|(name, unit, values)| (name.to_owned(), unit.to_owned(), values));
+    Table::new(py, columns, PyDict::new(py))
 }
 
 /// A text, or several.

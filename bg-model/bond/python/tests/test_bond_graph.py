@@ -41,6 +41,39 @@ def test_a_linear_model_has_its_mode():
     assert math.isclose(modes[0]["imaginary"], 5, rel_tol=1e-9)
 
 
+def test_pictures_are_svg(tmp_path: pathlib.Path):
+    swing = bg.compile(SWING)
+    (tmp_path / "measured.csv").write_text("t,x,v\n0,0.1,0\n1,0.05,0.1\n")
+    picture = swing.plot("v over x", t_end=2, others=[tmp_path / "measured.csv"])
+    assert picture.svg.startswith("<svg") and "x in m" in picture.svg and "measured" in picture._repr_svg_()
+    picture.save(tmp_path / "phase.svg")
+    assert (tmp_path / "phase.svg").read_text() == picture.svg
+    assert "frequency in Hz" in swing.plot("spectrum of x", t_end=2).svg
+    with pytest.raises(ValueError, match="there is no output, parameter or measure `y`"):
+        swing.plot("y over x")
+
+
+ROTOR = """
+graph Rotor {
+    param speed: rpm = 3000; ground { point bearing = [0, 0, 0]; }
+    body disc { mass 5; inertia [0.02, 0.02, 0.04]; start spin [0, 0, speed]; }
+    joint bearing: revolute z (ground.bearing -> disc) { stiffness 1e6; tilt stiffness 2000; }
+    observe { x: rad = disc.z_axis.x }
+}
+"""
+
+
+def test_critical_speeds_are_those_of_the_closed_form():
+    found = bg.compile(ROTOR).campbell("speed=0..12000", points=25, orders=[1])
+    speeds = found["critical_speeds"]
+    # Against the rotation 0.02 w^2 + 0.04 w^2 = 2000; the three places of the bearing swing at the root of 1e6 / 5.
+    expected = [math.sqrt(2000 / 0.06) * 30 / math.pi] + 3 * [math.sqrt(2e5) * 30 / math.pi]
+    assert np.allclose(speeds["speed"], expected, rtol=1e-9) and speeds.units["speed"] == "rpm"
+    assert set(found["modes"]["mode"]) == {1, 2, 3, 4, 5} and "order 1" in found["picture"].svg
+    with pytest.raises(ValueError, match="has no parameter `sped`"):
+        bg.compile(ROTOR).campbell("sped=0..1")
+
+
 def test_faults_are_shown_at_their_places():
     with pytest.raises(bg.FaultError) as raised:
         bg.compile(SWING.replace("slide -> spring", "slide -> sprin"))

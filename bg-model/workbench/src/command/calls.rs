@@ -4,21 +4,27 @@
 //! the sentence that they would refuse it with.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use bg_model::description::ParameterInfo;
 use bg_model::run::Trajectory;
+use bg_model::simulation::Recording;
 use thiserror::Error;
 
-use super::linearize::space as linearised;
+use super::arguments::LinearizeArguments;
+use super::linearize::{check_time, space as linearised};
 use super::sensitivity::derivatives;
+use super::{campbell, plot};
 use crate::ask::inputs::{self, Named};
 use crate::ask::parameters::{self, Chosen, number};
 use crate::ask::request::Integration;
-use crate::ask::scenes::Scene;
+use crate::ask::scenes::{Scene, own_values};
 use crate::program::Program;
 use crate::run::running::{Begin, follow};
+use crate::show::signals::Drawing;
 use crate::studies::optimize::{self, Optimum, Sought, Trial};
 use crate::studies::sensitivity::Course;
+use crate::studies::sweep::campbell::Campbell;
 use bg_analysis::linear::StateSpace;
 
 /// What cannot be done, in a sentence.
@@ -161,6 +167,51 @@ pub fn optimize(
     let each = |_: usize, _: &Trial| told();
     let found = optimize::optimum(&program.models, scene, &chosen.values, &chosen.inputs, &sought, &each);
     Ok((sought, found.map_err(refused)?))
+}
+
+/// The modes over a parameter, `NAME=FROM..TO`, at so many values: about the model's start or its equilibrium, or where its
+/// run is at `at`, s. Orders are those that are given, else 1 and 2 of a speed.
+///
+/// # Errors
+/// It cannot be asked for, or no value has a linear model.
+pub fn campbell(
+    program: &Program,
+    asked: &Asked,
+    by: &str,
+    points: usize,
+    orders: Option<&[f64]>,
+    at: Option<f64>,
+) -> Result<Campbell, Refused> {
+    check_time("at", at).map_err(refused)?;
+    let Given { scene, chosen, .. } = given(program, asked)?;
+    let what = campbell::asked(scene, by, points.max(2), orders, None).map_err(refused)?;
+    let place = at.or((asked.start == Started::Model).then_some(0.0));
+    let integration = |t| LinearizeArguments::of_scene(&scene.name).integration(t);
+    campbell::followed(program, scene, &chosen, what, (place, &integration), &|| ()).map_err(refused)
+}
+
+/// A picture of a run: `v over x`, `spectrum of x`, `orders of x over angle`, or a signal over time; other runs and measurements
+/// in CSV files beside it. SVG.
+///
+/// # Errors
+/// It cannot be drawn.
+pub fn plot(program: &Program, asked: &Asked, picture: &str, others: &[PathBuf]) -> Result<String, Refused> {
+    let Given { scene, chosen, .. } = given(program, asked)?;
+    let drawing = Drawing::read(scene.description, picture).map_err(|fault| refused(format!("{picture}: {fault}")))?;
+    let others = plot::others(others, scene.description).map_err(refused)?;
+    for (name, run) in &others {
+        drawing.check(run).map_err(|column| refused(format!("{name} has no column `{column}`")))?;
+    }
+    let own = own_values(scene, &program.models.scenes, &chosen.values).map_err(refused)?;
+    let mut integration = asked.integration.clone();
+    integration.step = integration.step.min(integration.t_end / plot::SAMPLES);
+    let Ran { run: trajectory, failure, .. } = run(program, &Asked { integration, ..asked.clone() })?;
+    if let Some(failure) = failure {
+        return Err(refused(format!("the run failed: {failure}")));
+    }
+    let others = others.iter().map(|(name, run)| (name.as_str(), run));
+    let runs: Vec<(&str, &Recording)> = std::iter::once(("", &trajectory.recording)).chain(others).collect();
+    drawing.plot(&scene.name, &runs, own.values()).drawn().map_err(refused)
 }
 
 /// What is written in JSON, as TOML.

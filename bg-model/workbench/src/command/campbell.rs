@@ -14,7 +14,7 @@ use super::run::chosen;
 use super::sensitivity::unknown;
 use super::{InputError, ended};
 use crate::ask::inputs;
-use crate::ask::parameters::{bounds, number};
+use crate::ask::parameters::{Chosen, bounds, number};
 use crate::ask::scenes::Scene;
 use crate::files::json::rows;
 use crate::files::{FileError, RunFolder, console};
@@ -79,37 +79,75 @@ pub struct CampbellArguments {
     pub out: PathBuf,
 }
 
-impl CampbellArguments {
-    fn asked(&self, scene: &Scene) -> Result<Asked, InputError> {
-        let refused = |option: &'static str, fault: String| InputError::Unknown { option, fault };
-        let form = || refused("--by", format!("{}: give it as NAME=FROM..TO, for example speed=0..3000", self.by));
-        let (name, range) = self.by.split_once('=').ok_or_else(form)?;
-        let own = scene.description.parameters;
-        let by = own.iter().find(|info| info.name == name.trim());
-        let by =
-            by.ok_or_else(|| unknown("--by", "parameter", name.trim(), &scene.name, own.iter().map(|info| info.name)))?;
-        let range = bounds(by, range).map_err(|fault| refused("--by", format!("{}: {fault}", self.by)))?;
-        let is_speed = turns(by.unit).is_some();
-        let orders = match &self.orders {
-            Some(_) if !is_speed => {
-                let fault = format!("`{}` is in {} and no speed: leave --orders out", by.name, by.unit);
-                return Err(refused("--orders", fault));
-            }
-            Some(orders) => orders.clone(),
-            None if is_speed => vec![1.0, 2.0],
-            None => Vec::new(),
-        };
-        let is_none = |value: &f64| !(value.is_finite() && *value > 0.0);
-        let above = || "a number above 0".to_owned();
-        if let Some(&value) = orders.iter().find(|order| is_none(order)) {
-            return Err(InputError::Range { name: "--orders", value, range: above() });
+/// What is asked of a scene: the parameter with its range as `NAME=FROM..TO`, at how many values, which orders, up to which
+/// frequency (Hz).
+pub fn asked(
+    scene: &Scene,
+    by: &str,
+    points: usize,
+    orders: Option<&[f64]>,
+    up_to: Option<f64>,
+) -> Result<Asked, InputError> {
+    let refused = |option: &'static str, fault: String| InputError::Unknown { option, fault };
+    let form = || refused("--by", format!("{by}: give it as NAME=FROM..TO, for example speed=0..3000"));
+    let (name, range) = by.split_once('=').ok_or_else(form)?;
+    let own = scene.description.parameters;
+    let info = own.iter().find(|info| info.name == name.trim());
+    let absent = || unknown("--by", "parameter", name.trim(), &scene.name, own.iter().map(|info| info.name));
+    let info = info.ok_or_else(absent)?;
+    let range = bounds(info, range).map_err(|fault| refused("--by", format!("{by}: {fault}")))?;
+    let is_speed = turns(info.unit).is_some();
+    let orders = match orders {
+        Some(_) if !is_speed => {
+            let fault = format!("`{}` is in {} and no speed: leave --orders out", info.name, info.unit);
+            return Err(refused("--orders", fault));
         }
-        if let Some(value) = self.up_to.filter(is_none) {
-            return Err(InputError::Range { name: "--up-to", value, range: above() });
-        }
-        Ok(Asked { by, range, points: self.points as usize, orders, up_to: self.up_to })
+        Some(orders) => orders.to_vec(),
+        None if is_speed => vec![1.0, 2.0],
+        None => Vec::new(),
+    };
+    let is_none = |value: &f64| !(value.is_finite() && *value > 0.0);
+    let above = || "a number above 0".to_owned();
+    if let Some(&value) = orders.iter().find(|order| is_none(order)) {
+        return Err(InputError::Range { name: "--orders", value, range: above() });
     }
+    if let Some(value) = up_to.filter(is_none) {
+        return Err(InputError::Range { name: "--up-to", value, range: above() });
+    }
+    Ok(Asked { by: info, range, points, orders, up_to })
+}
 
+/// The modes over the parameter: of models that are linearised at `place`, a time (s) or the equilibrium, as `integration` runs
+/// them there. `told` is told of each.
+pub fn followed(
+    program: &Program,
+    scene: &Scene,
+    chosen: &Chosen,
+    asked: Asked,
+    (place, integration): (Option<f64>, &dyn Fn(f64) -> IntegrationArguments),
+    told: &dyn Fn(),
+) -> Result<Campbell, InputError> {
+    let name = asked.by.name;
+    let modes = |value: f64| -> Result<Vec<Mode>, String> {
+        let mut values = chosen.values.clone();
+        values.set(name, value).map_err(|fault| fault.to_string())?;
+        let machine = program.models.made(scene, &values, &chosen.inputs).map_err(|fault| fault.to_string())?;
+        let found = linearised(&*machine, place, integration);
+        told();
+        Ok(found.map_err(|fault| fault.to_string())?.0.modes)
+    };
+    let found = follow(asked, modes);
+    match found.failure() {
+        Some(why) => {
+            let value = number(found.failed[0].0);
+            let fault = format!("no linear model from {name} = {value} {} on: {why}", found.asked.by.unit);
+            Err(InputError::Unknown { option: "--by", fault })
+        }
+        None => Ok(found),
+    }
+}
+
+impl CampbellArguments {
     /// Where it is linearised: at a time, s, or at the equilibrium.
     fn place(&self) -> Option<f64> {
         match (self.at, self.start) {
@@ -130,24 +168,15 @@ pub fn campbell(program: &Program, arguments: &CampbellArguments) -> Result<Exit
     check_time("--at", arguments.at)?;
     let (chosen, named) = chosen(program, &arguments.model)?;
     let scene = program.scene_called(&arguments.model.scene);
-    let asked = arguments.asked(scene)?;
+    let CampbellArguments { by, points, orders, up_to, .. } = arguments;
+    let asked = asked(scene, by, *points as usize, orders.as_deref(), *up_to)?;
     let folder = RunFolder::claim(&arguments.out, &[SVG, CSV, CRITICALS, TEXT].map(str::to_owned))?;
-    let (name, unit) = (asked.by.name, asked.by.unit);
-    let bar = bar(u64::from(arguments.points), "linearised at {pos} of {len} values");
-    let modes = |value: f64| -> Result<Vec<Mode>, String> {
-        let mut values = chosen.values.clone();
-        values.set(name, value).map_err(|fault| fault.to_string())?;
-        let machine = program.models.made(scene, &values, &chosen.inputs).map_err(|fault| fault.to_string())?;
-        let found = linearised(&*machine, arguments.place(), |t| arguments.integration(t));
-        bar.inc(1);
-        Ok(found.map_err(|fault| fault.to_string())?.0.modes)
-    };
-    let found = follow(asked, modes);
+    let bar = bar(u64::from(*points), "linearised at {pos} of {len} values");
+    let integration = |t| arguments.integration(t);
+    let where_and_how = (arguments.place(), &integration as &dyn Fn(f64) -> IntegrationArguments);
+    let found = followed(program, scene, &chosen, asked, where_and_how, &|| bar.inc(1));
     bar.finish_and_clear();
-    if let Some(why) = found.failure() {
-        let fault = format!("no linear model from {name} = {} {unit} on: {why}", number(found.failed[0].0));
-        return Err(InputError::Unknown { option: "--by", fault });
-    }
+    let found = found?;
     let inputs = inputs::text(&named, [0.0, arguments.place().unwrap_or(0.0)]);
     let text = format!("{}{inputs}", found.text());
     let (is_written, faults) = write(folder, &found, &scene.name, &text);

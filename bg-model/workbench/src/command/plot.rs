@@ -68,7 +68,7 @@ pub struct PlotArguments {
 }
 
 /// The least number of samples: a drawing of fewer would have corners.
-const SAMPLES: f64 = 4000.0;
+pub const SAMPLES: f64 = 4000.0;
 
 pub fn plot(program: &Program, arguments: &PlotArguments) -> Result<ExitCode, InputError> {
     let (chosen, _) = chosen(program, &arguments.model)?;

@@ -76,7 +76,9 @@ impl Drawing {
         } else {
             (signal(what)?, Over::Time)
         };
-        Ok(Self { model, shown: vec![shown], over, from, up_to: None, is_logarithmic: false })
+        // The lines of a spectrum are of all sizes.
+        let is_logarithmic = matches!(over, Over::Frequency | Over::Order(_));
+        Ok(Self { model, shown: vec![shown], over, from, up_to: None, is_logarithmic })
     }
 
     fn signals(&self) -> impl Iterator<Item = &Signal> {
@@ -113,7 +115,14 @@ impl Drawing {
         };
         let is_path =
             matches!(&self.over, Over::Signal(over) if is_one_unit && over.unit() == unit && !unit.is_empty());
-        let mut plot = Plot::new(&format!("{scene}: {}", names.join(", ")), &across, &what, series);
+        let shown = names.join(", ");
+        let heading = match &self.over {
+            Over::Order(angle) => format!("{scene}: orders of {shown} over {}", angle.text),
+            Over::Signal(over) => format!("{scene}: {shown} over {}", over.text),
+            Over::Frequency => format!("{scene}: spectrum of {shown}"),
+            Over::Time => format!("{scene}: {shown}"),
+        };
+        let mut plot = Plot::new(&heading, &across, &what, series);
         (plot.is_true_to_scale, plot.is_logarithmic) = (is_path, self.is_logarithmic);
         plot
     }

@@ -11,13 +11,16 @@ was reached. While a model runs, other threads do.
 """
 
 from ._hacksaw import (
+    Picture,
     RunFailed,
     Table,
     __version__,
+    campbell,
     linearize,
     optimize,
     outputs,
     parameters,
+    plot,
     read_sweep,
     run,
     scenes,
@@ -27,13 +30,16 @@ from ._hacksaw import (
 )
 
 __all__ = [
+    "Picture",
     "RunFailed",
     "Table",
     "__version__",
+    "campbell",
     "linearize",
     "optimize",
     "outputs",
     "parameters",
+    "plot",
     "read_sweep",
     "run",
     "scenes",

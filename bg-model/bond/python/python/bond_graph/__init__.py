@@ -13,11 +13,12 @@
 >>> run = swing.run(t_end=2, mass=1.5)
 >>> run["x"]                               # a NumPy array, for the times run["t"] in s
 >>> run.to_pandas()                        # with the time as index; to_polars() likewise
+>>> swing.plot("v over x", t_end=2)        # a picture in a notebook; .save("phase.svg")
 
 Parameters have SI units: ``swing.parameters()`` has their names, units and ranges. Faults of a text raise ``FaultError``, which shows
 each at its place; what cannot be raises ``ValueError`` with a sentence, a run that stops before its end ``RunFailed``.
 """
 
-from ._bond_graph import FaultError, Model, RunFailed, Table, __version__, compile, load
+from ._bond_graph import FaultError, Model, Picture, RunFailed, Table, __version__, compile, load
 
-__all__ = ["FaultError", "Model", "RunFailed", "Table", "__version__", "compile", "load"]
+__all__ = ["FaultError", "Model", "Picture", "RunFailed", "Table", "__version__", "compile", "load"]
