@@ -10,6 +10,8 @@ use tempfile::TempDir;
 
 #[path = "program/campbell.rs"]
 mod campbell;
+#[path = "program/identify.rs"]
+mod identify;
 #[path = "program/optimize.rs"]
 mod optimize;
 #[path = "program/plot.rs"]

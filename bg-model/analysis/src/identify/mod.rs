@@ -202,7 +202,8 @@ fn fitted(
         if is_settled || round + 1 == FITS {
             let columns = data.columns.iter().map(|measured| column(measured, &models[measured.output].values, rtol));
             let runs = (evaluations, misfit.derivatives);
-            return Ok(identified(variables, &fitted, columns.collect(), runs));
+            let freedom = freedom(data, &found, &sizes_of_columns, variables.len());
+            return Ok(identified(variables, &fitted, freedom, columns.collect(), runs));
         }
         misfit.noise = found;
     }
@@ -353,10 +354,22 @@ fn noise_of(data: &Data, models: &[bg_model::simulation::Column], sizes: &[f64])
     data.columns.iter().zip(sizes).map(of).collect()
 }
 
+/// How many values speak of the noise, beyond those that the parameters take: of columns that the model meets to rounding,
+/// such as a place that never moves, none does, unless there are no others.
+fn freedom(data: &Data, noise: &[f64], sizes: &[f64], parameters: usize) -> f64 {
+    let count = |column: &Measured| column.values.iter().flatten().count();
+    let columns = data.columns.iter().zip(noise).zip(sizes);
+    let noisy: usize =
+        columns.filter(|((_, noise), size)| **noise > EXACT * **size).map(|((column, _), _)| count(column)).sum();
+    let values = if noisy > parameters { noisy } else { data.count() };
+    (values - parameters) as f64
+}
+
 /// What a fit says of the parameters.
 fn identified(
     variables: &[Variable],
     fitted: &Fitted,
+    freedom: f64,
     columns: Vec<Column>,
     (evaluations, derivatives): (usize, usize),
 ) -> Identified {
@@ -389,7 +402,6 @@ fn identified(
     let combined = (0..svd.singular_values.len()).filter(is_weak).filter(is_of_others).map(parts);
     let undetermined: Vec<Vec<(usize, f64)>> = without_influence.chain(combined).collect();
     let is_undetermined = |k: usize| undetermined.iter().flatten().any(|(named, _)| *named == k);
-    let freedom = (rows - parameters) as f64;
     let variance = fitted.residuals.norm_squared() / freedom;
     let covariance = DMatrix::from_fn(parameters, parameters, |i, j| {
         let strong = (0..svd.singular_values.len()).filter(|k| !is_weak(k));
