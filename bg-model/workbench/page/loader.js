@@ -19,11 +19,11 @@ const model = async () => {
 };
 /** Whether the machine moves before anybody asks for it. */
 const plays = false;
-// Who tests the page or takes a picture of it waits until it is done: a frame whose document is open keeps it from
-// being loaded.
-const hold = /^#(test$|still=)/.test(location.hash) ? document.body.appendChild(document.createElement("iframe")) : null;
-hold?.setAttribute("hidden", "");
-hold?.contentDocument.open();
+// Who prints the page, tests it or takes a picture of it waits until it is done: a frame whose document is open keeps it
+// from being loaded.
+const hold = document.body.appendChild(document.createElement("iframe"));
+hold.setAttribute("hidden", "");
+hold.contentDocument.open();
 unpacked("script").then(
   (text) => {
     const script = document.createElement("script");
@@ -31,6 +31,7 @@ unpacked("script").then(
     document.body.append(script);
   },
   (fault) => {
+    hold.contentDocument.close();
     document.getElementById("charts").append(`Charts and motion need a browser of 2023 or later: ${fault.message}`);
   },
 );

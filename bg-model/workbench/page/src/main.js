@@ -14,7 +14,7 @@ import { texts } from "./texts.js";
 import { trial } from "./trial.js";
 import { Tuning } from "./tuning.js";
 
-/* global model, plays, unpacked */
+/* global hold, model, plays, unpacked */
 
 const faults = [];
 window.addEventListener("error", ({ message }) => faults.push(message));
@@ -26,10 +26,14 @@ const clock = new Clock(data.times[0] ?? 0, data.times.at(-1) ?? 0);
 const charts = new Charts(clock);
 onPaper(() => charts.draw());
 
-/** After the first frame is on the screen: what comes then does not keep the page from being seen. */
+/**
+ * After the first frame is on the screen: what comes then does not keep the page from being seen. Where it is printed at once
+ * there are no frames.
+ */
 const painted = () =>
   new Promise((resolve) => {
     requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(resolve)));
+    setTimeout(resolve, 300);
   });
 
 /** Hands the images their SVG texts. */
@@ -40,6 +44,7 @@ async function draw() {
   for (const image of images) {
     image.src = URL.createObjectURL(new Blob([texts[Number(image.dataset.drawing)]], { type: "image/svg+xml" }));
   }
+  await Promise.all(images.map((image) => image.decode().catch(() => null)));
 }
 
 /** The sliders of a live page; what else is on it follows them. */
@@ -114,5 +119,8 @@ export function begin(machine) {
   const started = () => start(machine);
   if (location.hash === "#test") trial(started);
   else if (location.hash.startsWith("#still=") && machine.still) machine.still(started);
-  else started().catch((fault) => console.error(fault));
+  else
+    started()
+      .catch((fault) => console.error(fault))
+      .finally(() => hold?.contentDocument.close());
 }
