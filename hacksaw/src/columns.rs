@@ -26,8 +26,8 @@ pub fn reference_columns() -> Vec<String> {
         .collect()
 }
 
-/// The forces in joints, of the slot and of the cut, each with its components: what a trajectory has after the columns of the
-/// reference, as far as a scene observes it.
+/// The forces in joints, of the slot and of the cut, each with its components: what a trajectory has after the columns
+/// of the reference, as far as a scene observes it.
 #[must_use]
 pub fn forces() -> Vec<String> {
     let of = |force: &str| AXES.map(|axis| format!("{force}_{axis}"));

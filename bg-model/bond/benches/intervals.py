@@ -1,10 +1,11 @@
-"""How often the intervals of `identify` have the true values: runs with known parameters, noise drawn anew, fitted from elsewhere.
+"""How often the intervals of `identify` have the true values: known runs with noise drawn anew, fitted from elsewhere.
 
     cargo build --release -p hacksaw
     python3 bg-model/bond/benches/intervals.py target/release/hacksaw -- --scene rigid
 
-The noise of a column is normal and independent, 1 % of how far the column spreads. Of 100 intervals that hold with 95 % some 95 have the
-value: 91 to 99 in 95 of 100 such benches. Any other program serves as well: `intervals.py bond --file swing.bond --fit stiffness`.
+The noise of a column is normal and independent, 1 % of how far the column spreads. Of 100 intervals that hold with 95 %
+some 95 have the value: 91 to 99 in 95 of 100 such benches. Any other program serves as well:
+`intervals.py bond --file swing.bond --fit stiffness`.
 """
 
 import argparse
@@ -30,9 +31,8 @@ def noisy(rows, part, draw):
     means = [sum(column) / len(column) for column in columns]
     pairs = zip(columns, means)
     spreads = [math.sqrt(sum((value - mean) ** 2 for value in column) / len(column)) for column, mean in pairs]
-    return [
-        [value if k == 0 else value + draw.gauss(0, 1) * part * spreads[k] for k, value in enumerate(row)] for row in rows
-    ]
+    with_noise = lambda k, value: value if k == 0 else value + draw.gauss(0, 1) * part * spreads[k]
+    return [[with_noise(k, value) for k, value in enumerate(row)] for row in rows]
 
 
 def main():

@@ -194,11 +194,11 @@ impl Model {
         }
     }
 
-    /// Run the model and draw a picture of it: "v over x", "spectrum of x", "orders of torque over crank.angle", or a signal
-    /// over time; ", 2.." at its end leaves the first 2 s out.
+    /// Run the model and draw a picture of it: "v over x", "spectrum of x", "orders of torque over crank.angle", or a
+    /// signal over time; ", 2.." at its end leaves the first 2 s out.
     ///
-    /// `others` are CSV files of other runs or measurements, drawn beside it. Gives a picture, which a notebook shows: its SVG is
-    /// `svg`, and `save(path)` writes it. Raises ValueError where it cannot be drawn.
+    /// `others` are CSV files of other runs or measurements, drawn beside it. Gives a picture, which a notebook shows:
+    /// its SVG is `svg`, and `save(path)` writes it. Raises ValueError where it cannot be drawn.
     #[pyo3(signature = (picture, scene=None, *, others=None, t_end=None, step=None, method=None, rtol=None, atol=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn plot(
@@ -226,9 +226,10 @@ impl Model {
 
     /// Follow natural frequencies over a parameter, "speed=0..12000": a Campbell diagram.
     ///
-    /// Modes are those about the model's start, at `points` values; `start="equilibrium"` takes the machine at rest, `at` where
-    /// its run is, s. Gives a dict: `modes`, a table with a row for each mode at each value, `critical_speeds`, a table of where
-    /// the `orders` of a speed meet modes, and `picture`. Raises ValueError where there are none.
+    /// Modes are those about the model's start, at `points` values; `start="equilibrium"` takes the machine at rest,
+    /// `at` where its run is, s. Gives a dict: `modes`, a table with a row for each mode at each value,
+    /// `critical_speeds`, a table of where the `orders` of a speed meet modes, and `picture`. Raises ValueError where
+    /// there are none.
     #[pyo3(signature = (by, scene=None, *, points=61, orders=None, at=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn campbell<'py>(

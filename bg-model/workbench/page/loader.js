@@ -19,8 +19,8 @@ const model = async () => {
 };
 /** Whether the machine moves before anybody asks for it. */
 const plays = false;
-// Who prints the page, tests it or takes a picture of it waits until it is done: a frame whose document is open keeps it
-// from being loaded.
+// Who prints the page, tests it or takes a picture of it waits until it is done: a frame whose document is open keeps
+// it from being loaded.
 const hold = document.body.appendChild(document.createElement("iframe"));
 hold.setAttribute("hidden", "");
 hold.contentDocument.open();

@@ -354,8 +354,8 @@ fn noise_of(data: &Data, models: &[bg_model::simulation::Column], sizes: &[f64])
     data.columns.iter().zip(sizes).map(of).collect()
 }
 
-/// How many values speak of the noise, beyond those that the parameters take: of columns that the model meets to rounding,
-/// such as a place that never moves, none does, unless there are no others.
+/// How many values speak of the noise, beyond those that the parameters take: of columns that the model meets to
+/// rounding, such as a place that never moves, none does, unless there are no others.
 fn freedom(data: &Data, noise: &[f64], sizes: &[f64], parameters: usize) -> f64 {
     let count = |column: &Measured| column.values.iter().flatten().count();
     let columns = data.columns.iter().zip(noise).zip(sizes);

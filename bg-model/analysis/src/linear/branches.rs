@@ -2,10 +2,11 @@
 //!
 //! In: the modes at ascending values of a parameter, in the order of the values. Out: branches, each a mode that swings
 //! and how it changes; where one crosses a line such as that of a rotor's unbalance, the value at which it does.
-//! Method: a branch goes on to the mode that is nearest to where its last two eigenvalues point, relative to their size, and
-//! whose shape is most alike: the product of both shapes, each coordinate by the root of its participation factor and its
-//! phase, which depends on no unit (a modal assurance criterion, Allemang 2003). All pairs are taken by their distance, the
-//! nearest first. What crosses a line is sought between two values by the Illinois rule (Dowell and Jarratt 1971).
+//! Method: a branch goes on to the mode that is nearest to where its last two eigenvalues point, relative to their
+//! size, and whose shape is most alike: the product of both shapes, each coordinate by the root of its participation
+//! factor and its phase, which depends on no unit (a modal assurance criterion, Allemang 2003). All pairs are taken by
+//! their distance, the nearest first. What crosses a line is sought between two values by the Illinois rule (Dowell and
+//! Jarratt 1971).
 
 use bg_model::nalgebra::Complex;
 
@@ -20,7 +21,8 @@ pub struct Branch {
 
 /// The weight of a shape beside that of an eigenvalue's relative distance.
 const SHAPE: f64 = 0.5;
-/// The distance from which on a mode is another one: half of the eigenvalue, with a shape that is as different as can be.
+/// The distance from which on a mode is another one: half of the eigenvalue, with a shape that is as different as can
+/// be.
 const FARTHEST: f64 = 1.0;
 /// The most steps of a search, and its accuracy in parts of the value.
 const STEPS: usize = 60;
@@ -110,8 +112,8 @@ pub fn branches(points: impl IntoIterator<Item = (f64, Vec<Mode>)>) -> Vec<Branc
     all
 }
 
-/// Where `excess` of a branch changes its sign between two of its points: the value and the mode there. `modes` gives the modes
-/// at a value, where there are some.
+/// Where `excess` of a branch changes its sign between two of its points: the value and the mode there. `modes` gives
+/// the modes at a value, where there are some.
 ///
 /// A crossing whose modes cannot be made is not there.
 pub fn crossings(
@@ -149,4 +151,66 @@ pub fn crossings(
         Some((b.0, b.2))
     };
     branch.points.windows(2).filter_map(between).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An undamped mode of this frequency, rad/s, in which both coordinates take part so much.
+    fn mode(frequency: f64, shares: [f64; 2]) -> Mode {
+        let part = |share| Part { name: String::new(), unit: String::new(), share, magnitude: 1.0, phase: 0.0 };
+        Mode {
+            real: 0.0,
+            imaginary: frequency,
+            natural: frequency,
+            frequency: frequency / std::f64::consts::TAU,
+            damping: Some(0.0),
+            shape: shares.map(part).to_vec(),
+            words: String::new(),
+        }
+    }
+
+    /// One mode that rises, one that falls; each alone in its coordinate.
+    fn crossing(value: f64) -> Vec<Mode> {
+        let mut modes = vec![mode(10.0 + value, [1.0, 0.0]), mode(20.0 - value, [0.0, 1.0])];
+        modes.sort_by(|a, b| a.imaginary.total_cmp(&b.imaginary));
+        modes
+    }
+
+    #[test]
+    fn modes_that_cross_stay_what_they_are() {
+        // At 5 both are equal but for their shapes.
+        let found = branches((0..=10).map(|k| (f64::from(k), crossing(f64::from(k)))));
+        assert_eq!(found.len(), 2);
+        for (branch, way) in found.iter().zip([1.0, -1.0]) {
+            let first = branch.points[0].1.imaginary;
+            assert_eq!(branch.points.len(), 11);
+            assert!(branch.points.iter().all(|(value, mode)| (mode.imaginary - first - way * value).abs() < 1e-12));
+        }
+    }
+
+    #[test]
+    fn a_mode_that_begins_is_a_branch_of_its_own_and_one_that_ends_is_none_any_more() {
+        let at = |value: u32| match value {
+            0..=2 => vec![mode(10.0, [1.0, 0.0])],
+            3 => vec![mode(10.0, [1.0, 0.0]), mode(40.0, [0.0, 1.0])],
+            _ => vec![mode(40.0, [0.0, 1.0])],
+        };
+        let found = branches((0..6).map(|value| (f64::from(value), at(value))));
+        let ends: Vec<[f64; 2]> = found.iter().map(|branch| [branch.points[0].0, branch.last().0]).collect();
+        assert_eq!(ends, [[0.0, 3.0], [3.0, 5.0]]);
+    }
+
+    #[test]
+    fn a_crossing_is_found_to_rounding() {
+        let found = branches((0..=10).map(|k| (f64::from(k), crossing(f64::from(k)))));
+        let excess = |value: f64, mode: &Mode| mode.imaginary - 4.0 * value;
+        // 10 + x = 4 x and 20 - x = 4 x, the second at one of the points.
+        for (branch, expected) in found.iter().zip([10.0 / 3.0, 4.0]) {
+            let met = crossings(branch, excess, |value| Some(crossing(value)));
+            assert!(met.len() == 1 && (met[0].0 - expected).abs() < 1e-11, "{met:?}");
+        }
+        assert!(crossings(&found[0], excess, |_| None).is_empty());
+    }
 }

@@ -134,8 +134,8 @@ pub enum OptimizeError {
 pub const FEASIBLE: f64 = 1e-6;
 /// How far starts are away from a given one that has no bounds, in parts of a variable's size.
 const FAR: f64 = std::f64::consts::LN_2;
-/// How far runs around a minimum are away from it, in parts of the way between a variable's bounds: ripples of a goal are
-/// narrower. And how often a search goes on from a better one of them.
+/// How far runs around a minimum are away from it, in parts of the way between a variable's bounds: ripples of a goal
+/// are narrower. And how often a search goes on from a better one of them.
 const AROUND: [f64; 2] = [0.2, 0.05];
 const HOPS: usize = 3;
 /// How much better a run farther away has to be, in parts of the goal's size.
@@ -388,9 +388,9 @@ impl Runs<'_> {
         }
     }
 
-    /// Looks at runs around the best one so far, each with one variable changed; gives the first better one with its numbers. A
-    /// search on derivatives ends in the next ripple of a goal that has many, as the peaks of what rings have (a poll of
-    /// pattern search: V. Torczon, SIAM J. Optim. 7 (1997) 1-25).
+    /// Looks at runs around the best one so far, each with one variable changed; gives the first better one with its
+    /// numbers. A search on derivatives ends in the next ripple of a goal that has many, as the peaks of what rings
+    /// have (a poll of pattern search: V. Torczon, SIAM J. Optim. 7 (1997) 1-25).
     fn better_around(&mut self, bounds: &[[f64; 2]]) -> ControlFlow<(), Option<(Vec<f64>, Numbers)>> {
         let Some((best, _)) = self.best.clone() else { return ControlFlow::Continue(None) };
         let goal = |trial: &Trial| trial.goals.as_ref().map_or(f64::INFINITY, |goals| goals[self.job.goal]);

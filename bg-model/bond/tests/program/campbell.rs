@@ -1,9 +1,10 @@
-//! `campbell`: frequencies and critical speeds beside closed forms, what cannot be asked for; sweeps of three parameters.
+//! `campbell`: frequencies and critical speeds beside closed forms, what cannot be asked for; sweeps of three
+//! parameters.
 
 use super::{folder, refused, told, write};
 
-/// A disc that may tilt in its bearing. With I about a diameter, 2 I about the axis, a stiffness k and the speed w the tilt
-/// swings by I q'' -+ 2 I w q' i + k q = 0.
+/// A disc that may tilt in its bearing. With I about a diameter, 2 I about the axis, a stiffness k and the speed w the
+/// tilt swings by I q'' -+ 2 I w q' i + k q = 0.
 const ROTOR: &str = "
 graph Rotor {
     param speed: rpm = 3000; param tilt: N*m/rad = 2000, above 0; param mass: kg = 5, above 0;
@@ -37,7 +38,8 @@ fn a_tilting_disc_has_the_frequencies_and_critical_speeds_of_the_closed_form() {
         };
         assert!((frequency - expected / turn).abs() < 1e-9 * frequency, "{mode} at {rpm}: {frequency}");
     }
-    // I w^2 n^2 + 2 I w^2 n = k against the rotation; with it the order 1 is never met and the order 2 is that of w = infinity.
+    // I w^2 n^2 + 2 I w^2 n = k against the rotation; with it the order 1 is never met and the order 2 is that of w =
+    // infinity.
     let against = |order: f64| (own / (order * order + 2.0 * order)).sqrt() * 60.0 / turn;
     let places = |order: f64| (1e6_f64 / 5.0).sqrt() / order * 60.0 / turn;
     let expected: Vec<[f64; 2]> =

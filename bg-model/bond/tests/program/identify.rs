@@ -41,8 +41,8 @@ fn a_column_that_never_moves_makes_no_interval_narrower() {
     };
     let (all, moving) = (interval(""), interval("--output x,v"));
     assert!((all / moving - 1.0).abs() < 1e-6, "{all} {moving}");
-    // The noise is 1 % of an amplitude in each column; x and v move by t / 20 of theirs for each N/m: with J'J the sum over both
-    // columns of the squares of that in parts of the noise.
+    // The noise is 1 % of an amplitude in each column; x and v move by t / 20 of theirs for each N/m: with J'J the sum
+    // over both columns of the squares of that in parts of the noise.
     let square = |k: i32| {
         let t = 0.01 * f64::from(k);
         let by = [-0.1 * t * (5.0 * t).sin() / 1e-3, (-0.5 * t * (5.0 * t).cos() - 0.1 * (5.0 * t).sin()) / 5e-3];

@@ -1,4 +1,5 @@
-//! What is said and where from: colours, JSON in place of texts, pictures and measurements on a page, the origin of a run.
+//! What is said and where from: colours, JSON in place of texts, pictures and measurements on a page, the origin of a
+//! run.
 
 use std::process::Command;
 

@@ -23,7 +23,8 @@ function ticks([least, largest], count) {
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((digit) => digit * power).find((round) => round >= rough);
   const first = Math.ceil(least / step);
-  return Array.from({ length: Math.floor(largest / step) - first + 1 }, (_, k) => Number(((first + k) * step).toPrecision(12)));
+  const tick = (_, k) => Number(((first + k) * step).toPrecision(12));
+  return Array.from({ length: Math.floor(largest / step) - first + 1 }, tick);
 }
 
 /** The range of values with a margin; a single value has one about it. */
@@ -129,7 +130,8 @@ export class Against {
       PLOT.left + (size[0] * (a - across[0])) / (across[1] - across[0]),
       PLOT.top + size[1] * (1 - (b - up[0]) / (up[1] - up[0])),
     ];
-    const drawing = shape("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": `${y.name} over ${x.name}` });
+    const label = `${y.name} over ${x.name}`;
+    const drawing = shape("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label });
     const [bottom, right] = [height - PLOT.bottom, width - PLOT.right];
     const text = (value) => String(value).replaceAll("-", "\u2212");
     for (const value of ticks(across, Math.max(size[0] / 90, 2))) {
@@ -143,20 +145,23 @@ export class Against {
       drawing.append(shape("text", { x: PLOT.left - 6, y: place + 4, "text-anchor": "end" }, text(value)));
     }
     const named = ({ name, unit }) => (unit ? `${name} in ${unit}` : name);
-    drawing.append(shape("text", { class: "axis", x: (PLOT.left + right) / 2, y: height - 8, "text-anchor": "middle" }, named(x)));
-    const turned = `rotate(-90 14 ${(PLOT.top + bottom) / 2})`;
-    drawing.append(shape("text", { class: "axis", x: 14, y: (PLOT.top + bottom) / 2, "text-anchor": "middle", transform: turned }, named(y)));
-    runs.forEach(([name, as, bs], index) => {
+    const name = (curve, left, top, more) =>
+      drawing.append(shape("text", { class: "axis", x: left, y: top, "text-anchor": "middle", ...more }, named(curve)));
+    name(x, (PLOT.left + right) / 2, height - 8);
+    const middle = (PLOT.top + bottom) / 2;
+    name(y, 14, middle, { transform: `rotate(-90 14 ${middle})` });
+    runs.forEach(([of, as, bs], index) => {
       const points = as.map((a, k) => (a === null || bs[k] === null ? null : this.at(a, bs[k])));
-      const moves = points.map((point, k) => point && `${points[k - 1] ? "L" : "M"}${point[0].toFixed(1)} ${point[1].toFixed(1)}`);
-      const line = shape("path", { class: name === null ? "own" : "other", d: moves.filter(Boolean).join("") });
+      const move = ([left, top], letter) => `${letter}${left.toFixed(1)} ${top.toFixed(1)}`;
+      const moves = points.map((point, k) => point && move(point, points[k - 1] ? "L" : "M"));
+      const line = shape("path", { class: of === null ? "own" : "other", d: moves.filter(Boolean).join("") });
       line.style.setProperty("--hue", `var(--hue-${index % 7})`);
       drawing.append(line);
-      if (name !== null) {
-        const label = shape("text", { class: "name", x: right - 4, y: PLOT.top + 16 * index, "text-anchor": "end" }, name);
-        label.style.setProperty("--hue", `var(--hue-${index % 7})`);
-        drawing.append(label);
-      }
+      if (of === null) return;
+      const place = { class: "name", x: right - 4, y: PLOT.top + 16 * index, "text-anchor": "end" };
+      const entry = shape("text", place, of);
+      entry.style.setProperty("--hue", `var(--hue-${index % 7})`);
+      drawing.append(entry);
     });
     this.#dot = shape("circle", { class: "dot", r: 5 });
     drawing.append(this.#dot);

@@ -27,8 +27,8 @@ const charts = new Charts(clock);
 onPaper(() => charts.draw());
 
 /**
- * After the first frame is on the screen: what comes then does not keep the page from being seen. Where it is printed at once
- * there are no frames.
+ * After the first frame is on the screen: what comes then does not keep the page from being seen. Where it is printed
+ * at once there are no frames.
  */
 const painted = () =>
   new Promise((resolve) => {
@@ -73,7 +73,8 @@ const FEW = 6;
 
 /** A field that leaves those charts whose names have its text. */
 function filter(outputs) {
-  const field = element("input", { type: "search", class: "wanted", placeholder: "only outputs with \u2026", "aria-label": "Filter the outputs" });
+  const label = { placeholder: "only outputs with \u2026", "aria-label": "Filter the outputs" };
+  const field = element("input", { type: "search", class: "wanted", ...label });
   const choose = () => {
     const text = field.value.trim().toLowerCase();
     for (const { place, title, curves } of charts.in(outputs)) {

@@ -1,6 +1,7 @@
 // Other runs and measurements beside the run's own curves.
-// In: charts of the run, the times of their samples, the others of the page's data. Out: the charts with a curve more for
-// each column that another one has, at the same times: on straight lines between its own rows, nothing outside of them.
+// In: charts of the run, the times of their samples, the others of the page's data. Out: the charts with a curve more
+// for each column that another one has, at the same times: on straight lines between its own rows, nothing outside of
+// them.
 
 import { sampleAt } from "./clock.js";
 

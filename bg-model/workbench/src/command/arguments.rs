@@ -248,13 +248,13 @@ pub struct RunArguments {
     #[arg(long = "output", value_name = "NAME", value_delimiter = ',')]
     pub outputs: Vec<String>,
 
-    /// Show another run or a measurement, a CSV file whose columns have names of outputs, in the charts of the page; can be
-    /// given again and again
+    /// Show another run or a measurement, a CSV file whose columns have names of outputs, in the charts of the page;
+    /// can be given again and again
     #[arg(long = "with", value_name = "FILE.csv")]
     pub others: Vec<PathBuf>,
 
-    /// Draw a picture on the page: "pin.force.y over pin.force.x", "spectrum of speed", "orders of torque over crank.angle",
-    /// or a signal over time; ", 2.." at its end leaves the first 2 s out. Can be given again and again
+    /// Draw a picture on the page: "pin.force.y over pin.force.x", "spectrum of speed", "orders of torque over
+    /// crank.angle", or a signal over time; ", 2.." at its end leaves the first 2 s out. Can be given again and again
     #[arg(long = "plot", value_name = "PICTURE", allow_hyphen_values = true)]
     pub plots: Vec<String>,
 

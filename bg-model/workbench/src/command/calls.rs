@@ -169,8 +169,8 @@ pub fn optimize(
     Ok((sought, found.map_err(refused)?))
 }
 
-/// The modes over a parameter, `NAME=FROM..TO`, at so many values: about the model's start or its equilibrium, or where its
-/// run is at `at`, s. Orders are those that are given, else 1 and 2 of a speed.
+/// The modes over a parameter, `NAME=FROM..TO`, at so many values: about the model's start or its equilibrium, or where
+/// its run is at `at`, s. Orders are those that are given, else 1 and 2 of a speed.
 ///
 /// # Errors
 /// It cannot be asked for, or no value has a linear model.
@@ -190,8 +190,8 @@ pub fn campbell(
     campbell::followed(program, scene, &chosen, what, (place, &integration), &|| ()).map_err(refused)
 }
 
-/// A picture of a run: `v over x`, `spectrum of x`, `orders of x over angle`, or a signal over time; other runs and measurements
-/// in CSV files beside it. SVG.
+/// A picture of a run: `v over x`, `spectrum of x`, `orders of x over angle`, or a signal over time; other runs and
+/// measurements in CSV files beside it. SVG.
 ///
 /// # Errors
 /// It cannot be drawn.

@@ -74,13 +74,14 @@ pub struct CampbellArguments {
     #[arg(long)]
     pub json: bool,
 
-    /// Folder for campbell.svg, campbell.csv, critical_speeds.csv and campbell.txt, which replace those of the run before
+    /// Folder for campbell.svg, campbell.csv, critical_speeds.csv and campbell.txt, which replace those of the run
+    /// before
     #[arg(long, value_name = "DIR", default_value = "out/campbell")]
     pub out: PathBuf,
 }
 
-/// What is asked of a scene: the parameter with its range as `NAME=FROM..TO`, at how many values, which orders, up to which
-/// frequency (Hz).
+/// What is asked of a scene: the parameter with its range as `NAME=FROM..TO`, at how many values, which orders, up to
+/// which frequency (Hz).
 pub fn asked(
     scene: &Scene,
     by: &str,
@@ -117,8 +118,8 @@ pub fn asked(
     Ok(Asked { by: info, range, points, orders, up_to })
 }
 
-/// The modes over the parameter: of models that are linearised at `place`, a time (s) or the equilibrium, as `integration` runs
-/// them there. `told` is told of each.
+/// The modes over the parameter: of models that are linearised at `place`, a time (s) or the equilibrium, as
+/// `integration` runs them there. `told` is told of each.
 pub fn followed(
     program: &Program,
     scene: &Scene,

@@ -1,7 +1,8 @@
 //! Whether help and faults are coloured: `--color auto|always|never`.
 //!
-//! In: the words of a command line, before they are parsed: help and what is wrong with them are coloured or not, too. Out: the
-//! choice, which everything that is said follows from then on. Words that are no choice are the parser's to refuse.
+//! In: the words of a command line, before they are parsed: help and what is wrong with them are coloured or not, too.
+//! Out: the choice, which everything that is said follows from then on. Words that are no choice are the parser's to
+//! refuse.
 
 use std::ffi::OsString;
 

@@ -43,8 +43,8 @@ pub struct PlotArguments {
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     pub from: f64,
 
-    /// Draw spectra up to this frequency or order only [default: a quarter above the last amplitude that is a thousandth of
-    /// the largest one]
+    /// Draw spectra up to this frequency or order only [default: a quarter above the last amplitude that is a
+    /// thousandth of the largest one]
     #[arg(long, value_name = "NUMBER")]
     pub up_to: Option<f64>,
 

@@ -123,8 +123,8 @@ impl Pictures {
         Ok(Self { others, drawings, own })
     }
 
-    /// The pictures of a run with their titles, and of those that cannot be drawn why not. Other runs are in those whose
-    /// columns they have.
+    /// The pictures of a run with their titles, and of those that cannot be drawn why not. Other runs are in those
+    /// whose columns they have.
     fn drawn(&self, scene: &Scene, run: &Recording) -> (Vec<(String, String)>, Vec<String>) {
         let (mut drawn, mut faults) = (Vec::new(), Vec::new());
         for (text, drawing) in &self.drawings {

@@ -1,7 +1,7 @@
 //! The commit that a folder's repository is at.
 //!
-//! In: a folder. Out: the commit that git's `HEAD` names, or nothing where there is no repository. Files that differ from it
-//! are not looked for: who has to know has their CRC-32. The files are those of gitrepository-layout(5).
+//! In: a folder. Out: the commit that git's `HEAD` names, or nothing where there is no repository. Files that differ
+//! from it are not looked for: who has to know has their CRC-32. The files are those of gitrepository-layout(5).
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -23,7 +23,8 @@ pub fn is_quiet() -> bool {
     IS_QUIET.load(Relaxed)
 }
 
-/// Whether what is said is coloured: always, never, or on a terminal unless the environment has `NO_COLOR` (no-color.org).
+/// Whether what is said is coloured: always, never, or on a terminal unless the environment has `NO_COLOR`
+/// (no-color.org).
 #[cfg(not(target_arch = "wasm32"))]
 pub fn set_colour(choice: clap::ColorChoice) {
     let choice = match choice {
@@ -49,8 +50,8 @@ pub fn tell(text: &str) -> Result<(), FileError> {
     if is_quiet() { Ok(()) } else { print(text) }
 }
 
-/// What a command has found: `text`, as [`tell`] has it, or where JSON is asked for that, whether the program is to be quiet or
-/// not.
+/// What a command has found: `text`, as [`tell`] has it, or where JSON is asked for that, whether the program is to be
+/// quiet or not.
 ///
 /// # Errors
 /// As [`print()`].

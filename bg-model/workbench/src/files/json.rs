@@ -2,8 +2,8 @@
 
 use serde_json::{Map, Value};
 
-/// The rows of a CSV text with a head: an object for each, by the columns' names. A cell that is a number is one; an empty one is
-/// null.
+/// The rows of a CSV text with a head: an object for each, by the columns' names. A cell that is a number is one; an
+/// empty one is null.
 ///
 /// # Panics
 /// The text is no CSV, which is for the caller to write.

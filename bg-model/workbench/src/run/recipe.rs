@@ -40,7 +40,8 @@ pub struct Recipe {
     pub version: String,
     /// The version of the workbench and of what integrates.
     pub workbench: String,
-    /// The file that the model was read from; none of a compiled one. A file with other words for the same gives the same run.
+    /// The file that the model was read from; none of a compiled one. A file with other words for the same gives the
+    /// same run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model_file: Option<ModelFile>,
     /// The commit that the model is from, where it is known.

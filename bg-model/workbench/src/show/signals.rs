@@ -1,5 +1,5 @@
-//! Pictures of signals, which are outputs or made of them: over time, against each other, as spectra over frequency or over the
-//! orders of a shaft.
+//! Pictures of signals, which are outputs or made of them: over time, against each other, as spectra over frequency or
+//! over the orders of a shaft.
 //!
 //! In: which signals and over what, as options or as a text; runs and measurements. Out: a plot with a series for each
 //! signal of each run.
@@ -35,7 +35,8 @@ pub struct Drawing {
     pub over: Over,
     /// From this time on, s.
     pub from: f64,
-    /// Spectra up to this frequency or order only; else a quarter above the last amplitude that is a thousandth of the largest.
+    /// Spectra up to this frequency or order only; else a quarter above the last amplitude that is a thousandth of the
+    /// largest.
     pub up_to: Option<f64>,
     /// Whether the vertical axis is logarithmic.
     pub is_logarithmic: bool,
@@ -49,8 +50,8 @@ fn end_of(spectrum: &[(f64, f64)]) -> f64 {
 }
 
 impl Drawing {
-    /// What a text asks for: `y over x`, `spectrum of x`, `orders of x over angle`, or a signal, over time; with `, 2..` at its
-    /// end from 2 s on.
+    /// What a text asks for: `y over x`, `spectrum of x`, `orders of x over angle`, or a signal, over time; with `,
+    /// 2..` at its end from 2 s on.
     ///
     /// # Errors
     /// A sentence.
@@ -98,7 +99,8 @@ impl Drawing {
         needed.find(|name| !run.columns.iter().any(|column| column.name == *name)).map_or(Ok(()), Err)
     }
 
-    /// The plot of runs with their names, the first of which needs none; of models with these values of their parameters.
+    /// The plot of runs with their names, the first of which needs none; of models with these values of their
+    /// parameters.
     #[must_use]
     pub fn plot(&self, scene: &str, runs: &[(&str, &Recording)], parameters: &[f64]) -> Plot {
         let is_alone = runs.len() == 1;

@@ -1,9 +1,9 @@
-//! A drawing in fewer bytes: its polylines as paths of relative moves, neighbours that look the same as one path; its dots
-//! likewise, as the round ends of lines without a length.
+//! A drawing in fewer bytes: its polylines as paths of relative moves, neighbours that look the same as one path; its
+//! dots likewise, as the round ends of lines without a length.
 //!
 //! In: SVG text. Out: the same drawing. The points of a polyline are whole numbers with up to five digits each; the
-//! moves between them mostly have two. Where neighbours lie over each other and are seen through, the upper one no longer
-//! darkens the lower one.
+//! moves between them mostly have two. Where neighbours lie over each other and are seen through, the upper one no
+//! longer darkens the lower one.
 
 use std::fmt::Write;
 
@@ -20,8 +20,11 @@ pub fn compact(svg: &str) -> String {
         let (tag, after) = tag.split_at(end);
         rest = after;
         let made = path(tag).or_else(|| dot(tag));
-        let goes_on = between.trim().is_empty()
-            && matches!((&open, &made), (Some(open), Some((before, _, after))) if open.0 == *before && open.1 == *after);
+        let is_same = open
+            .as_ref()
+            .zip(made.as_ref())
+            .is_some_and(|(open, (before, _, after))| open.0 == *before && open.1 == *after);
+        let goes_on = between.trim().is_empty() && is_same;
         if !goes_on {
             text += &open.take().map_or_else(String::new, |(_, after)| format!("\"{after}"));
             text += between;
@@ -101,7 +104,8 @@ mod tests {
         let dot = |x: i32| {
             format!("<circle cx=\"{x}\" cy=\"7\" r=\"25\" fill-opacity=\"0.8\" fill=\"#0072B1\" stroke=\"none\"/>\n")
         };
-        let expected = "<path stroke=\"#0072B1\" stroke-opacity=\"0.8\" stroke-width=\"50\" stroke-linecap=\"round\" d=\"M1 7h0M2 7h0\"/>";
+        let expected = "<path stroke=\"#0072B1\" stroke-opacity=\"0.8\" stroke-width=\"50\" stroke-linecap=\"round\" \
+                        d=\"M1 7h0M2 7h0\"/>";
         assert_eq!(compact(&(dot(1) + &dot(2))).trim(), expected);
         let ring = "<circle cx=\"1\" cy=\"7\" r=\"25\" fill=\"none\" stroke=\"red\"/>";
         assert_eq!(compact(ring), ring);

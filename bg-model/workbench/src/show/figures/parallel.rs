@@ -1,7 +1,7 @@
 //! Parallel axes: a line for each run through its parameters and what they result in (Inselberg 1985).
 //!
-//! In: columns of the runs. Out: SVG, an axis for each column, lines in the colour of what stands on the last one. A run that
-//! lacks a number has no line.
+//! In: columns of the runs. Out: SVG, an axis for each column, lines in the colour of what stands on the last one. A
+//! run that lacks a number has no line.
 
 use std::ops::Range;
 

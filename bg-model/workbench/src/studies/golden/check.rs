@@ -58,7 +58,8 @@ pub struct Deviating {
     pub name: String,
     /// What differs.
     pub differences: Vec<Difference>,
-    /// The parameters that have other values than then, or other units, as `name = value unit, recorded with value unit`.
+    /// The parameters that have other values than then, or other units, as `name = value unit, recorded with value
+    /// unit`.
     pub changed: Vec<String>,
     /// The version of the workbench that recorded it, where that is not this one.
     pub recorded_by: Option<String>,

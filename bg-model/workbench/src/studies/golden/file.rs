@@ -120,7 +120,8 @@ impl Record {
             text += &format!("{name} = {value:?}\n");
         }
         if !values.is_empty() {
-            text += "\n# All parameters as they were. A later run has the defaults of its time, and those of [parameters].\n[values]\n";
+            text += "\n# All parameters as they were. A later run has the defaults of its time, and those of [parameters].\n\
+                     [values]\n";
         }
         for (name, Quantity { value, unit }) in values {
             text += &format!("{name:?} = {{ value = {value:?}, unit = {unit:?} }}\n");

@@ -49,8 +49,8 @@ impl Place {
         Ok(Self { files, model, known })
     }
 
-    /// Writes `run`, which is what `scene`, of this commit, gives when it is integrated so with these inputs and parameters.
-    /// Gives one line on what is recorded.
+    /// Writes `run`, which is what `scene`, of this commit, gives when it is integrated so with these inputs and
+    /// parameters. Gives one line on what is recorded.
     pub fn write(
         self,
         (scene, commit): (&str, Option<&str>),

@@ -1,9 +1,9 @@
-//! Campbell diagrams: natural frequencies over a parameter, such as the speed of a rotor, and where the orders of that speed
-//! meet them.
+//! Campbell diagrams: natural frequencies over a parameter, such as the speed of a rotor, and where the orders of that
+//! speed meet them.
 //!
-//! In: which parameter, from where to where, and what linearises a model at a value of it. Out: the branches of its modes,
-//! critical speeds, as a text, tables and a figure. A mode is the same one along a branch as `bg_analysis::linear::branches`
-//! has it.
+//! In: which parameter, from where to where, and what linearises a model at a value of it. Out: the branches of its
+//! modes, critical speeds, as a text, tables and a figure. A mode is the same one along a branch as
+//! `bg_analysis::linear::branches` has it.
 
 use bg_analysis::linear::{Branch, Mode, branches, crossings};
 use bg_model::description::ParameterInfo;
@@ -154,8 +154,8 @@ impl Campbell {
         }
         if self.is_level() {
             text += &format!(
-                "\nno frequency depends on `{}`; at an equilibrium nothing moves: --start model has the speeds that the machine \
-                 starts with\n",
+                "\nno frequency depends on `{}`; at an equilibrium nothing moves: --start model has the speeds that the \
+                 machine starts with\n",
                 by.name
             );
         }
@@ -257,7 +257,7 @@ impl Campbell {
         Plot::new(&heading, &with_unit(by.name, by.unit), "frequency in Hz", series).drawn()
     }
 
-    /// The highest frequency that is drawn, Hz: a quarter above the highest order, or what meets it not, two modes at least.
+    /// The highest frequency that is drawn, Hz: a quarter above the highest order, and so far that two modes are seen.
     fn up_to(&self) -> f64 {
         let Asked { by, range, orders, up_to, .. } = &self.asked;
         if let Some(up_to) = up_to {

@@ -1,9 +1,9 @@
 //! What a sweep looks like: a page with the numbers of its runs over the parameters; of tolerances how they are spread,
 //! and which parameter spreads them.
 //!
-//! In: a program, the folder of a sweep. Out: `index.html`, and of tolerances `statistics.csv` and a text. Lines over one
-//! parameter, maps over two, parallel axes and dots over more; histograms and ranked bars of tolerances, beside what derivatives at
-//! the means say to first order.
+//! In: a program, the folder of a sweep. Out: `index.html`, and of tolerances `statistics.csv` and a text. Lines over
+//! one parameter, maps over two, parallel axes and dots over more; histograms and ranked bars of tolerances, beside
+//! what derivatives at the means say to first order.
 
 use std::path::Path;
 
@@ -400,8 +400,8 @@ fn map(axes: &[Vec<f64>], [a, b]: [usize; 2], swept: &[Column], number: &Column)
     figure(&caption, Map { heading: caption.clone(), captions, across, up, values }.drawn())
 }
 
-/// Of more than two parameters each number on parallel axes, a line for each run; then each number over each parameter, a dot
-/// for each run.
+/// Of more than two parameters each number on parallel axes, a line for each run; then each number over each parameter,
+/// a dot for each run.
 fn scattered(swept: &[Column], numbers: &[Column]) -> Vec<Item> {
     let on_axes = |number: &Column| {
         let names = swept.iter().map(|column| column.name.as_str()).collect::<Vec<_>>().join(", ");
