@@ -31,7 +31,11 @@ def noisy(rows, part, draw):
     means = [sum(column) / len(column) for column in columns]
     pairs = zip(columns, means)
     spreads = [math.sqrt(sum((value - mean) ** 2 for value in column) / len(column)) for column, mean in pairs]
-    with_noise = lambda k, value: value if k == 0 else value + draw.gauss(0, 1) * part * spreads[k]
+
+    def with_noise(k, value):
+        # The first column is the time.
+        return value if k == 0 else value + draw.gauss(0, 1) * part * spreads[k]
+
     return [[with_noise(k, value) for k, value in enumerate(row)] for row in rows]
 
 

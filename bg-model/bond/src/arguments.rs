@@ -211,9 +211,19 @@ fn command() -> Command {
 pub fn whole() -> Command {
     let of_workbench = bg_workbench::command::commands();
     let file = || Arg::new("FILE").index(1).required(true).help("The file");
-    // Places that the workbench's commands have move behind the file.
-    let behind = |arg: Arg| arg.get_index().map_or(arg.clone(), |index| arg.index(index + 1));
-    let full = |known: &Command| known.clone().mut_args(behind).arg(file());
+    // What the workbench's commands have without an option's name comes after the file.
+    let full = |known: &Command| {
+        let mut place = 1;
+        let after = |arg: Arg| {
+            if arg.is_positional() {
+                place += 1;
+                arg.index(place)
+            } else {
+                arg
+            }
+        };
+        known.clone().mut_args(after).arg(file())
+    };
     let mut program = command();
     for (name, _) in COMMANDS {
         let known = of_workbench.find_subcommand(name).expect("a command of the workbench");

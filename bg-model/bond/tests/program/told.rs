@@ -27,6 +27,19 @@ fn faults_and_help_are_coloured_where_that_is_asked_for() {
 }
 
 #[test]
+fn shells_and_manuals_know_every_command() {
+    let folder = folder();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = told(folder.path(), &format!("completions {shell}"));
+        assert!(["campbell", "compare", "golden"].iter().all(|command| script.contains(command)), "{shell}");
+    }
+    told(folder.path(), "man --out manual");
+    let page = |name: &str| std::fs::read_to_string(folder.path().join("manual").join(name)).expect(name);
+    assert!(page("bond-campbell.1").contains("\\-\\-orders") && page("bond-compare.1").contains("FILE"));
+    assert!(page("bond-golden-check.1").contains("FILE") && told(folder.path(), "man").contains("campbell"));
+}
+
+#[test]
 fn what_is_text_is_json_where_that_is_asked_for() {
     let folder = folder();
     write(&folder, "swing.bond", SWING);
