@@ -17,14 +17,18 @@ function shape(tag, attributes, text) {
   return made;
 }
 
-/** Round numbers inside a range, about `count` of them. */
+/** Round numbers inside a range, about `count` of them, and two at least. */
 function ticks([least, largest], count) {
   const rough = (largest - least) / count;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((digit) => digit * power).find((round) => round >= rough);
-  const first = Math.ceil(least / step);
-  const tick = (_, k) => Number(((first + k) * step).toPrecision(12));
-  return Array.from({ length: Math.floor(largest / step) - first + 1 }, tick);
+  const inside = (step) => {
+    const first = Math.ceil(least / step);
+    const tick = (_, k) => Number(((first + k) * step).toPrecision(12));
+    return Array.from({ length: Math.max(Math.floor(largest / step) - first + 1, 0) }, tick);
+  };
+  const steps = [10, 5, 2, 1, 0.5, 0.2].map((digit) => digit * power);
+  const next = steps.findLastIndex((step) => step >= rough);
+  return steps.slice(next).map(inside).find((found) => found.length > 1) ?? [];
 }
 
 /** The range of values with a margin; a single value has one about it. */
