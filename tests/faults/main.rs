@@ -216,7 +216,7 @@ const VALUES: [(&str, &str); 4] = [
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 60] = [
+const MORE: [(&str, &str); 65] = [
     ("BG0339", "table ▸c: m -> N = [[0, 1]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;"),
     (
         "BG0339",
@@ -250,9 +250,9 @@ const MORE: [(&str, &str); 60] = [
         "body ball { sphere radius 0.1; density 1; }\ncontact c (ground line x -> ball circle 0.1) { stiffness 1e5; restitution ▸1; }",
     ),
     (
-        "BG0213",
+        "BG0203",
         "body ball { sphere radius 0.1; density 1; }\ncontact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; }\n\
-         friction rub on ▸c { coulomb 0.2; }",
+         friction ▸rub on c { coulomb 0.2; }",
     ),
     (
         "BG0204",
@@ -262,6 +262,30 @@ const MORE: [(&str, &str); 60] = [
     (
         "BG0204",
         "body rod { sphere radius 1; density 1; }\njoint pin: revolute z (ground -> rod) { rigid; clearance ▸1e-4; }",
+    ),
+    (
+        "BG0204",
+        "body rod { sphere radius 1; density 1; }\n\
+         joint pin: revolute z (ground -> rod) { stiffness 1; tilt stiffness 1; clearance 1e-4; length ▸0.1; }",
+    ),
+    (
+        "BG0204",
+        "body rod { sphere radius 1; density 1; }\n\
+         joint gib: prismatic x (ground -> rod) { stiffness 1; tilt stiffness 1; exponent ▸1.5; }",
+    ),
+    (
+        "BG0231",
+        "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground arc 0.3 from 0 to 1 -> ball) { stiffness 1e5; }",
+    ),
+    (
+        "BG0704",
+        "body ball { sphere radius 0.1; density 1; }\n\
+         contact c (ground arc 0.3 from 1 to ▸0.5 -> ball circle 0.1) { stiffness 1e5; }",
+    ),
+    (
+        "BG0213",
+        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; }\n\
+         stop end on ▸c { at most 1; stiffness 1e4; }",
     ),
     ("BG0102", "1 j: translation; I m = 2; j -> m; memory last: m/s = j.flow▸;"),
     ("BG0304", "table c: m -> N = [[0, 1], [1, 2]]; 1 j: translation; I m = 2; C k(q) = ▸c.slope(q); j -> m; j -> k;"),

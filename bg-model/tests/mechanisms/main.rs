@@ -2,6 +2,7 @@
 
 mod all_reactions;
 mod angles;
+mod ball_on_plate;
 mod bricard;
 mod closed_loops;
 mod controllers;
@@ -23,3 +24,4 @@ mod stewart_platform;
 mod tables;
 mod tasks;
 mod text;
+mod walls;

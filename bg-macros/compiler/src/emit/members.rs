@@ -100,8 +100,10 @@ fn of_joint(joint: &Joint) -> Vec<Member> {
         members.push(("speed", Scalar, "Speed of the free rotation. Unit: rad/s."));
     }
     if joint.clearance.is_some() {
-        members.push(("pressed", Scalar, "The force between pin and hole. Unit: N."));
-        members.push(("eccentricity", Scalar, "How far the pin is from the middle of its hole. Unit: m."));
+        members.push(("pressed", Scalar, "The force where its play is used up, the sum of all places. Unit: N."));
+        if joint.kind.spin().is_some() {
+            members.push(("eccentricity", Scalar, "How far the pin is from the middle of its hole. Unit: m."));
+        }
     }
     if joint.kind.slide().is_some() {
         members.push(("travel", Scalar, "Way of the free translation. Unit: m."));
@@ -137,6 +139,7 @@ mod tests {
         body f { mass 1; inertia [1, 1, 1]; }
         joint revolute: revolute z (ground.O -> a) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
         joint loose: revolute z (a.end -> b) { stiffness 1; damping 1; clearance 1e-4; tilt stiffness 1; }
+        joint gib: prismatic x (ground.O -> b) { stiffness 1; damping 1; clearance 1e-4; length 0.1; tilt stiffness 1; }
         joint prismatic: prismatic x (ground.O -> b) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
         joint ball: spherical (ground.O -> c) { stiffness 1; damping 1; }
         joint cylindrical: cylindrical x (ground.O -> d) { stiffness 1; damping 1; tilt stiffness 1; tilt damping 1; }
@@ -145,6 +148,7 @@ mod tests {
         spring coil (ground.P -> a.end) { stiffness 1; damping 1; length 0.1; }
         contact edge (a.end -> b along x) { y: C = soft, R = 1; }
         contact shapes (ground.P circle 0.1 -> b circle 0.2) { stiffness 1; damping 1; }
+        contact wall (ground.P segment x 0.1 -> b circle 0.2) { stiffness 1; damping 1; }
         drive motor on revolute torque = 1;
         friction rub on prismatic { coulomb 1; }
         stop end on prismatic { at most 1; stiffness 1; }

@@ -773,14 +773,24 @@ pub struct Joint {
     pub tilt_stiffness: Option<Expression>,
     /// `tilt damping E;`, N*m*s/rad.
     pub tilt_damping: Option<Expression>,
-    /// `clearance E;` by how much the radius of the hole is above that of the pin, m.
+    /// `clearance E;` how far a pin can move from the middle of its hole, or a slider across its guide, m.
     pub clearance: Option<Expression>,
-    /// `restitution E;` of a pin with a clearance, in the place of the damping.
-    pub restitution: Option<Expression>,
+    /// `length E;` of a slider with a clearance: how far apart the places are at which it touches, m.
+    pub length: Option<Expression>,
+    /// `exponent E;` and its like: how a joint with a clearance pushes, but for its stiffness and its damping.
+    pub play: PressLaw,
     /// `frame inertial;`: held rotations are the integrals of the relative angular velocity in inertial axes.
     pub inertial: bool,
     /// `rigid;`: an ideal joint, without stiffness and damping; its reactions keep the held motions zero.
     pub rigid: bool,
+}
+
+impl Joint {
+    /// How it pushes where its clearance is used up.
+    #[must_use]
+    pub fn press_law(&self) -> PressLaw {
+        PressLaw { stiffness: self.stiffness.clone(), damping: self.damping.clone(), ..self.play.clone() }
+    }
 }
 
 /// A spring and damper along the line between two points.
@@ -870,6 +880,12 @@ pub struct PressLaw {
 }
 
 impl PressLaw {
+    /// Those of its clauses that a joint has with a clearance only.
+    pub fn play_mut(&mut self) -> [(&'static str, &mut Option<Expression>); 4] {
+        let Self { exponent, dissipation, restitution, rest, .. } = self;
+        [("exponent", exponent), ("dissipation", dissipation), ("restitution", restitution), ("rest below", rest)]
+    }
+
     /// Its clauses in the order in which they are printed.
     pub fn clauses_mut(&mut self) -> [(&'static str, &mut Option<Expression>); 6] {
         let Self { stiffness, exponent, damping, dissipation, restitution, rest } = self;
@@ -899,6 +915,12 @@ pub enum Touching {
     Line(Axis),
     /// `plane z`: through the end, with this outward normal.
     Plane(Axis),
+    /// `segment x E`: a thin wall from the end along an axis of it, with this length in m; both sides and ends are free.
+    Segment(Axis, Expression),
+    /// `slot x E width E`: the inside of what a circle of this width covers on its way along a segment.
+    Slot(Axis, [Expression; 2]),
+    /// `arc E from E to E`: a thin wall on a circle around the end, between two angles about its z axis from its x axis.
+    Arc([Expression; 3]),
     /// `profile TABLE`: the distance of the outline by the angle about the end's z axis, or its height over the x axis.
     Profile(Name),
 }
@@ -914,25 +936,41 @@ impl Touching {
             Self::Sphere(_) => "sphere",
             Self::Line(_) => "line",
             Self::Plane(_) => "plane",
+            Self::Segment(..) => "segment",
+            Self::Slot(..) => "slot",
+            Self::Arc(_) => "arc",
             Self::Profile(_) => "profile",
         }
     }
 
-    /// Its radius.
+    /// Its sizes, each with the word that stands before it, or what it is where there is none.
     #[must_use]
-    pub fn radius(&self) -> Option<&Expression> {
+    pub fn sizes(&self) -> Vec<(&'static str, &Expression)> {
         match self {
-            Self::Circle(radius) | Self::Hole(radius) | Self::Sphere(radius) => Some(radius),
-            Self::Point | Self::Line(_) | Self::Plane(_) | Self::Profile(_) => None,
+            Self::Circle(radius) | Self::Hole(radius) | Self::Sphere(radius) => vec![("radius", radius)],
+            Self::Segment(_, length) => vec![("length", length)],
+            Self::Slot(_, [length, width]) => vec![("length", length), ("width", width)],
+            Self::Arc([radius, from, to]) => vec![("radius", radius), ("from", from), ("to", to)],
+            Self::Point | Self::Line(_) | Self::Plane(_) | Self::Profile(_) => Vec::new(),
         }
     }
 
     /// The same to be changed.
-    pub fn radius_mut(&mut self) -> Option<&mut Expression> {
+    pub fn sizes_mut(&mut self) -> &mut [Expression] {
         match self {
-            Self::Circle(radius) | Self::Hole(radius) | Self::Sphere(radius) => Some(radius),
-            Self::Point | Self::Line(_) | Self::Plane(_) | Self::Profile(_) => None,
+            Self::Circle(size) | Self::Hole(size) | Self::Sphere(size) | Self::Segment(_, size) => {
+                std::slice::from_mut(size)
+            }
+            Self::Slot(_, sizes) => sizes,
+            Self::Arc(sizes) => sizes,
+            Self::Point | Self::Line(_) | Self::Plane(_) | Self::Profile(_) => &mut [],
         }
+    }
+
+    /// Whether it touches in space, and not in a plane.
+    #[must_use]
+    pub fn is_in_space(&self) -> bool {
+        matches!(self, Self::Sphere(_) | Self::Plane(_))
     }
 
     /// Of two shapes the one with the lower rank has the axes in which they meet.
@@ -940,7 +978,7 @@ impl Touching {
     pub fn rank(&self) -> usize {
         match self {
             Self::Profile(_) => 0,
-            Self::Line(_) | Self::Plane(_) => 1,
+            Self::Line(_) | Self::Plane(_) | Self::Segment(..) | Self::Slot(..) | Self::Arc(_) => 1,
             Self::Hole(_) => 2,
             Self::Circle(_) | Self::Sphere(_) => 3,
             Self::Point => 4,

@@ -121,14 +121,20 @@ impl<T> Body<T> {
 
 impl<T> Solid<T> {
     fn map<'d, U>(&'d self, make: &mut impl FnMut(&'d T) -> U) -> Solid<U> {
-        let shape = match &self.shape {
-            Shape::Cuboid(edges) => Shape::Cuboid(make(edges)),
-            Shape::Cylinder { radius, length, axis } => {
+        Solid { shape: self.shape.map(make), center: make(&self.center), turned: self.turned.as_ref().map(make) }
+    }
+}
+
+impl<T> Shape<T> {
+    /// The same with other quantities.
+    pub fn map<'d, U>(&'d self, make: &mut impl FnMut(&'d T) -> U) -> Shape<U> {
+        match self {
+            Self::Cuboid(edges) => Shape::Cuboid(make(edges)),
+            Self::Cylinder { radius, length, axis } => {
                 Shape::Cylinder { radius: make(radius), length: make(length), axis: *axis }
             }
-            Shape::Sphere(radius) => Shape::Sphere(make(radius)),
-        };
-        Solid { shape, center: make(&self.center), turned: self.turned.as_ref().map(make) }
+            Self::Sphere(radius) => Shape::Sphere(make(radius)),
+        }
     }
 }
 

@@ -454,7 +454,10 @@ impl Display for Joint {
         setting(&mut entries, "tilt stiffness", self.tilt_stiffness.as_ref());
         setting(&mut entries, "tilt damping", self.tilt_damping.as_ref());
         setting(&mut entries, "clearance", self.clearance.as_ref());
-        setting(&mut entries, "restitution", self.restitution.as_ref());
+        setting(&mut entries, "length", self.length.as_ref());
+        for (clause, value) in self.play.clone().play_mut() {
+            setting(&mut entries, clause, value.as_ref());
+        }
         entries.extend(self.inertial.then(|| "frame inertial;".into()));
         entries.extend(self.rigid.then(|| "rigid;".into()));
         write!(f, "joint {}: {} ({})", self.name, self.kind, self.ends)?;
@@ -515,6 +518,9 @@ impl Display for Touching {
             Self::Point => Ok(()),
             Self::Circle(radius) | Self::Hole(radius) | Self::Sphere(radius) => write!(f, " {} {radius}", self.word()),
             Self::Line(axis) | Self::Plane(axis) => write!(f, " {} {}", self.word(), word_of(&AXES, axis)),
+            Self::Segment(axis, length) => write!(f, " segment {} {length}", word_of(&AXES, axis)),
+            Self::Slot(axis, [length, width]) => write!(f, " slot {} {length} width {width}", word_of(&AXES, axis)),
+            Self::Arc([radius, from, to]) => write!(f, " arc {radius} from {from} to {to}"),
             Self::Profile(table) => write!(f, " profile {table}"),
         }
     }

@@ -73,7 +73,8 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
             ends(&mut joint.ends, each);
             let clauses =
                 [&mut joint.stiffness, &mut joint.damping, &mut joint.tilt_stiffness, &mut joint.tilt_damping];
-            values(clauses.into_iter().chain([&mut joint.clearance, &mut joint.restitution]).flatten(), each);
+            values(clauses.into_iter().chain([&mut joint.clearance, &mut joint.length]).flatten(), each);
+            values(joint.play.play_mut().into_iter().flat_map(|(_, value)| value), each);
         }
         Item::Spring(spring) => {
             each(Met::Declared(&mut spring.name));
@@ -100,7 +101,7 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
                 if let Touching::Profile(table) = shape {
                     each(Met::Named(table));
                 }
-                values(shape.radius_mut(), each);
+                values(shape.sizes_mut(), each);
             }
             values(contact.law.clauses_mut().into_iter().flat_map(|(_, value)| value), each);
         }

@@ -34,8 +34,8 @@ pub struct Offered {
 /// The pendulum of `bond new`.
 const FIRST: &str = include_str!("../../src/first.bond");
 
-/// Mechanisms with loops, examples of the program `bond`: names, titles, what to look at, texts.
-const WITH_LOOPS: [[&str; 4]; 5] = [
+/// Mechanisms with loops and contacts, examples of the program `bond`: names, titles, what to look at, texts.
+const MECHANISMS: [[&str; 4]; 7] = [
     [
         "governor",
         "A Watt governor",
@@ -65,6 +65,18 @@ const WITH_LOOPS: [[&str; 4]; 5] = [
         "A planetary gear set",
         "Gears of the library between bodies: look at `carrier`, 0.3 of `sun`, and at the marks on the planets.",
         include_str!("../../examples/planetary.bond"),
+    ],
+    [
+        "geneva",
+        "A Geneva wheel",
+        "Look at `wheel`: a pin between walls takes it on by a quarter, and the drum holds it until the next one.",
+        include_str!("../../examples/geneva.bond"),
+    ],
+    [
+        "ball_on_plate",
+        "A ball on a plate",
+        "Look at `x` and `z`: the plate tilts so that the ball rolls to its middle.",
+        include_str!("../../examples/ball_on_plate.bond"),
     ],
 ];
 
@@ -96,14 +108,14 @@ pub fn all() -> Result<Vec<Offered>, String> {
         Ok(of_example(example, text))
     });
     let offered: Vec<Offered> = offered.collect::<Result<_, String>>()?;
-    let in_space = WITH_LOOPS.map(|[name, title, about, text]| Offered {
+    let mechanisms = MECHANISMS.map(|[name, title, about, text]| Offered {
         name: name.to_owned(),
         title: title.to_owned(),
         about: about.to_owned(),
         text: text.to_owned(),
         ..Offered::default()
     });
-    Ok([first, hacksaw].into_iter().chain(offered).chain(in_space).collect())
+    Ok([first, hacksaw].into_iter().chain(offered).chain(mechanisms).collect())
 }
 
 /// An example of the workbench, with the run that its head comment is for; parameters stay at their defaults.

@@ -4,13 +4,11 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use bg_compiler::source::library::{LibraryPart, names, parts};
-use bg_loaded::{Counted, Wanted, load_wanted};
 use bg_model::description::{Description, ParameterInfo};
 
-use super::super::text::graphs;
+use super::super::text::{file, graphs, held, said};
 
 /// Where the made part of the page begins.
 const MARK: &str =
@@ -115,37 +113,12 @@ fn made() -> String {
     text
 }
 
-fn file(path: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
-}
-
-/// The text at `path`, which is `expected` unless it is to be made anew.
-fn held(path: &Path, expected: &str) {
-    if std::env::var_os("RENEW").is_some() {
-        fs::write(path, expected).expect("a file to write");
-    }
-    let found = fs::read_to_string(path).expect("a text");
-    let differs = found.lines().zip(expected.lines()).find(|(found, expected)| found != expected);
-    assert!(found == expected, "{} differs, first {differs:?}: RENEW=1 writes it anew", path.display());
-}
-
 #[test]
 fn the_page_lists_the_library() {
     let path = file("../../bg-macros/docs/language/library.md");
     let text = fs::read_to_string(&path).expect("the page");
     let (own, _) = text.split_once(MARK).expect("a mark");
     held(&path, &format!("{own}{}", made()));
-}
-
-/// What is said of a text.
-fn said(text: &str) -> String {
-    let wanted = Wanted { scene: &|_| true, counted: Counted::Made, most: None };
-    match load_wanted(text, wanted) {
-        Ok(_) => "nothing: no fault\n".to_owned(),
-        Err(faults) => {
-            faults.iter().map(|fault| format!("[{}] {}; {}\n", fault.code, fault.message, fault.help)).collect()
-        }
-    }
 }
 
 /// A mistake: what it is, and a text with it.

@@ -250,3 +250,42 @@ fn a_pinion_on_a_body_drives_a_rack_on_another() {
         ran.is("force", 2.0 * k * acceleration, 1e-9);
     }
 }
+
+#[test]
+fn involute_teeth_push_their_gears_apart() {
+    let ran = |torque: f64, angle: f64| {
+        after(
+            1.0,
+            "use gears;",
+            &format!(
+                "ground {{ point O = [0, 0, 0]; point P = [0.072, 0.096, 0]; }}
+                body pinion {{ mass 1; inertia [1e-3, 1e-3, 1e-3]; }}
+                body wheel {{ mass 5; inertia [0.04, 0.04, 0.04]; start at [0.072, 0.096, 0]; }}
+                joint first: revolute z (ground.O -> pinion) {{ rigid; }} joint second: revolute z (ground.P -> wheel) {{ rigid; }}
+                part pair: BodyInvolutePair {{ first_radius = 30 mm; second_radius = 90 mm; pressure_angle = {angle:?} deg;
+                    away_x = wheel.position.x - pinion.position.x; away_y = wheel.position.y - pinion.position.y; }}
+                pinion.translation -> pair.first; pinion.rotation -> pair.first_turn; wheel.translation -> pair.second;
+                wheel.rotation -> pair.second_turn;
+                drive motor on first torque = {torque:?};
+                let apart: 1 = [0.6, 0.8, 0]; let across: 1 = [-0.8, 0.6, 0];
+                observe {{ pinion: rad/s = first.speed; wheel: rad/s = second.speed; all of pair;
+                    first_apart: N = dot(apart, first.force); second_apart: N = dot(apart, second.force);
+                    second_across: N = dot(across, second.force) }}
+                scenes only; scene Planar {{ expect planar; }}"
+            ),
+        )
+    };
+    for (torque, angle) in [(2.0, 20.0_f64), (-2.0, -25.0), (2.0, 0.0)] {
+        let ran = ran(torque, angle);
+        let acceleration = torque / (1e-3 + 0.04 / 9.0);
+        ran.is("pinion", acceleration, 1e-9);
+        ran.is("wheel", -acceleration / 3.0, 1e-9);
+        // The wheel gets its torque at 90 mm; across, the teeth push it, apart by the tangent of the angle.
+        let across = 0.04 * acceleration / 3.0 / 0.09;
+        ran.is("second_across", -across, 1e-9);
+        ran.is("pair.force", across / angle.to_radians().cos(), 1e-9);
+        let apart = across.abs() * angle.to_radians().tan().abs();
+        ran.is("second_apart", -apart, 1e-9);
+        ran.is("first_apart", apart, 1e-9);
+    }
+}

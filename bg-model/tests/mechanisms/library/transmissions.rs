@@ -326,6 +326,31 @@ fn a_belt_slips_at_its_grip() {
 }
 
 #[test]
+fn a_fast_belt_lifts_off_its_pulleys() {
+    let ran = |speed: f64| {
+        after(
+            3.0,
+            "use belts;",
+            &format!(
+                "part belt: FastBeltDrive {{ friction = 0.3; wrap = 160 deg; tension = 250 N; sliding = 20; mass = 0.2 kg/m; }}
+                Sf motor = {speed:?}; Sf held = 0;
+                1 a: rotation; 1 b: rotation; motor -> a -> belt.first; belt.second -> b; held -> b; observe {{ all of belt }}"
+            ),
+        )
+    };
+    let slips = ran(500.0);
+    slips.is("belt.centrifugal", 0.2 * 20.0 * 20.0, 1e-9);
+    slips.is("belt.slip", 20.0, 1e-9);
+    // Euler and Eytelwein, for what is left of the strands' tensions.
+    let (grip, pressing) = (slips.of("belt.pull") - 20.0 * 20.0, 250.0 - 80.0);
+    let ratio = (pressing + grip / 2.0) / (pressing - grip / 2.0);
+    assert!((ratio - (0.3 * 160.0_f64.to_radians()).exp()).abs() < 1e-9, "{ratio}");
+    // At 36 m/s nothing presses any more.
+    let lifted = ran(900.0);
+    lifted.is("belt.pull", 20.0 * 36.0, 1e-9);
+}
+
+#[test]
 fn a_winch_swings_its_load_and_does_not_push() {
     let winch = |t: f64, drum: f64| {
         after(

@@ -27,7 +27,7 @@ impl Expansion<'_> {
             None => self.text(span, &format!("let {name}.length: m = 0;")),
         }
         self.force_junction(span, name, (&a, &b), (a.arm.clone(), b.arm.clone()));
-        self.draw_joint((&spring.name, "spring".to_owned()), &spring.ends, (&a, &b), false);
+        self.draw_joint((&spring.name, "spring".to_owned()), &spring.ends, [&a.position, &b.position], false);
         self.text(
             span,
             &format!(
@@ -54,7 +54,7 @@ impl Expansion<'_> {
             self.fault(span, &MechanismFault::NoLaw { name: name.clone() });
         }
         self.force_junction(span, name, (&a, &b), (a.arm.clone(), b.arm_to(&a.position)));
-        self.draw_joint((&contact.name, "contact".to_owned()), &contact.ends, (&a, &b), false);
+        self.draw_joint((&contact.name, "contact".to_owned()), &contact.ends, [&a.position, &b.position], false);
         self.text(span, &format!("let {name}.gap: m = {} - {};", b.position, a.position));
         self.text(
             span,

@@ -29,6 +29,8 @@ pub(super) struct FreeAxis {
     pub joint: Option<String>,
     /// The force that presses where shapes touch, N.
     pub pressed: Option<String>,
+    /// Whether it is a plane, in which what touches in space slides: its flow is a vector.
+    pub is_plane: bool,
 }
 
 impl FreeAxis {
@@ -42,15 +44,14 @@ impl Expansion<'_> {
     /// The axis that a `word` of this name acts on; a joint without one is a fault.
     pub(super) fn free_axis(&mut self, word: &'static str, name: &Name, target: &Name) -> Option<FreeAxis> {
         let axis = self.axis_of(&target.text);
-        if axis.is_none() {
-            let (name, target_name) = (name.text.clone(), target.text.clone());
-            let is_in_space = self.shape_contacts().any(|contact| contact.name.text == target.text);
-            let fault = if is_in_space {
-                MechanismFault::InSpace { word, name, target: target_name }
-            } else {
-                MechanismFault::NoFreeAxis { word, name, target: target_name }
-            };
-            self.fault(target.span, &fault);
+        let (name, target_name) = (name.text.clone(), target.text.clone());
+        match &axis {
+            None => self.fault(target.span, &MechanismFault::NoFreeAxis { word, name, target: target_name }),
+            Some(axis) if axis.is_plane && word != "friction" => {
+                self.fault(target.span, &MechanismFault::InSpace { word, name, target: target_name });
+                return None;
+            }
+            Some(_) => {}
         }
         axis
     }
@@ -61,7 +62,7 @@ impl Expansion<'_> {
         if let Some(joint) = self.joints.get(first) {
             let free = |axis: &str, units| {
                 let (junction, joint) = (format!("{first}.{axis}"), Some(first.to_owned()));
-                FreeAxis { junction, units, joint, pressed: None }
+                FreeAxis { junction, units, joint, pressed: None, is_plane: false }
             };
             let spin = joint.kind.spin().filter(|_| axis != Some("slide")).map(|_| free("spin", &ROTATION));
             return spin
@@ -69,14 +70,15 @@ impl Expansion<'_> {
         }
         let of_shapes = |contact: &&ShapeContact| target.strip_suffix(".slide").unwrap_or(target) == contact.name.text;
         if let Some(ShapeContact { name, shapes, .. }) = self.shape_contacts().find(of_shapes) {
-            let is_in_space = shapes.iter().any(|shape| matches!(shape, Touching::Sphere(_) | Touching::Plane(_)));
             let (junction, pressed) = (format!("{name}.slide"), Some(format!("{name}.pressed")));
-            return (!is_in_space).then_some(FreeAxis { junction, units: &TRANSLATION, joint: None, pressed });
+            let is_plane = shapes.iter().any(Touching::is_in_space);
+            return Some(FreeAxis { junction, units: &TRANSLATION, joint: None, pressed, is_plane });
         }
         let contact = self.contacts().find(|contact| contact.name.text == target);
         let line = contact.map(|contact| format!("{target}.{}", contact.along.letter()));
         let units = if line.is_some() { &TRANSLATION } else { &UNKNOWN };
-        Some(FreeAxis { junction: line.unwrap_or_else(|| target.to_owned()), units, joint: None, pressed: None })
+        let junction = line.unwrap_or_else(|| target.to_owned());
+        Some(FreeAxis { junction, units, joint: None, pressed: None, is_plane: false })
     }
 
     fn contacts(&self) -> impl Iterator<Item = &Contact> {

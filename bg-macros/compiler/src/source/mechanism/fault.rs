@@ -22,6 +22,7 @@ pub enum MechanismFault {
     RestitutionAnd { name: String, clause: &'static str },
     InSpace { word: &'static str, name: String, target: String },
     ShapesApart { name: String, one: &'static str, other: &'static str },
+    Thin { name: String, word: &'static str },
     LineAcross { name: String },
     UnknownTable { name: String, near: Option<String> },
     RoughProfile { table: String, contact: String },
@@ -47,7 +48,7 @@ impl Explain for MechanismFault {
             F::NoLaw { .. } => "BG0212",
             F::NoFreeAxis { .. } | F::InSpace { .. } => "BG0213",
             F::RestitutionAnd { .. } => "BG0214",
-            F::ShapesApart { .. } => "BG0231",
+            F::ShapesApart { .. } | F::Thin { .. } => "BG0231",
             F::LineAcross { .. } => "BG0232",
             F::UnknownTable { .. } => "BG0233",
             F::RoughProfile { .. } | F::OpenProfile { .. } => "BG0234",
@@ -74,13 +75,21 @@ impl Explain for MechanismFault {
                 format!("{word} `{name}` has no axis to act on: `{target}` leaves none free")
             }
             F::InSpace { word, name, target } => {
-                format!("{word} `{name}` cannot act on `{target}`: its shapes touch in space, where nothing rubs")
+                format!("{word} `{name}` cannot act on `{target}`: its shapes slide in two directions in space")
             }
             F::RestitutionAnd { name, clause } => {
                 format!("stop `{name}` has both `restitution` and `{clause}`: it is rigid or it gives way")
             }
-            F::ShapesApart { name, one, other } => format!("contact `{name}` cannot be of a {one} and a {other}"),
-            F::LineAcross { name } => format!("the line of contact `{name}` stands on the plane of the shapes"),
+            F::ShapesApart { name, one, other } => {
+                format!("contact `{name}` cannot be of {} and {}", with_article(one), with_article(other))
+            }
+            F::Thin { name, word } => {
+                let word = with_article(word);
+                format!(
+                    "contact `{name}` cannot be of a point and {word}: both are thin, so neither can be inside the other"
+                )
+            }
+            F::LineAcross { name } => format!("a line along z stands on the plane of the shapes of contact `{name}`"),
             F::UnknownTable { name, .. } => format!("there is no table `{name}` for the profile"),
             F::RoughProfile { table, contact } => {
                 format!("the profile `{table}` of contact `{contact}` has corners: straight lines between its points")
@@ -122,11 +131,12 @@ impl Explain for MechanismFault {
             }
             F::InSpace { .. } => "write `circle` for `sphere` and `line` for `plane` if they meet in a plane".to_owned(),
             F::ShapesApart { .. } => {
-                "in the plane `circle`, `hole`, `line`, `profile` and points touch, in space `sphere`, `plane`, a `hole` \
-                 around a `sphere`, and points"
+                "in the plane a `circle` touches `circle`, `hole`, `line`, `segment`, `slot`, `arc` and `profile`, in space a \
+                 `sphere` touches `sphere`, `plane` and `hole`"
                     .to_owned()
             }
-            F::LineAcross { .. } => "write `line x` or `line y`, or `plane z` for a sphere".to_owned(),
+            F::Thin { .. } => "give the point a radius, such as `circle 1 mm`".to_owned(),
+            F::LineAcross { .. } => "write the axis x or y, as in `line x`, or `plane z` for a sphere".to_owned(),
             F::UnknownTable { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownTable { name, .. } => {
                 format!("declare `table {name}: deg -> mm = [[0, 30], .., [360, 30]], spline, periodic;`")
@@ -138,4 +148,9 @@ impl Explain for MechanismFault {
             F::RestitutionAnd { clause, .. } => format!("remove `{clause}`, or `restitution`"),
         }
     }
+}
+
+/// A noun with its article.
+fn with_article(noun: &str) -> String {
+    format!("{} {noun}", if noun.starts_with('a') { "an" } else { "a" })
 }

@@ -3,6 +3,7 @@
 //! In: `ast::Friction`. Out: an R at the junction of the axis that it acts on. Sliding, its effort is
 //! s + (h - s) exp(-(v / w)^2) + r v against the flow v: s by `coulomb`, h by `static`, w by `stribeck`, r by
 //! `viscous`; at rest it holds h. With `creep c` it does not stick: the dry part is multiplied by v / sqrt(v^2 + c^2).
+//! Where shapes touch in space, v is a vector in the plane of contact.
 //! Source of the law: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and
 //! compensation methods for the control of machines with friction, Automatica 30 (1994) 1083, equation 6.
 
@@ -21,6 +22,11 @@ impl Expansion<'_> {
         let force = self.pressing(friction, &axis);
         let unit = if force.is_empty() { axis.units.effort } else { "1" };
         self.friction_clause(friction, ("coulomb", "coulomb"), unit, coulomb);
+        let (square, part) = if axis.is_plane {
+            ("dot(v, v)", format!("dot(v, v) / ({name}.stribeck * {name}.stribeck)"))
+        } else {
+            ("v * v", format!("pow(v / {name}.stribeck, 2)"))
+        };
         let mut dry = format!("{name}.coulomb{force}");
         let mut holds = dry.clone();
         if let Some(at_rest) = &friction.at_rest {
@@ -29,12 +35,12 @@ impl Expansion<'_> {
         }
         if let Some(stribeck) = &friction.stribeck {
             self.friction_clause(friction, ("stribeck", "stribeck"), axis.units.flow, stribeck);
-            dry = format!("{dry} + ({holds} - {dry}) * exp(-pow(v / {name}.stribeck, 2))");
+            dry = format!("{dry} + ({holds} - {dry}) * exp(-{part})");
         }
         let mut law = dry;
         if let Some(creep) = &friction.creep {
             self.friction_clause(friction, ("creep", "creep"), axis.units.flow, creep);
-            law = format!("({law}) * v / sqrt(v * v + {name}.creep * {name}.creep)");
+            law = format!("({law}) * v / sqrt({square} + {name}.creep * {name}.creep)");
         }
         if let Some(viscous) = &friction.viscous {
             self.friction_clause(friction, ("viscous", "viscous"), axis.units.resistance, viscous);
@@ -53,6 +59,12 @@ impl Expansion<'_> {
             |clause, why| MechanismFault::SuperfluousClause { word: "friction", name: name.clone(), clause, why };
         if friction.coulomb.is_none() {
             self.fault(friction.name.span, &missing("coulomb", "it needs what it gives while it slides"));
+        }
+        if axis.is_plane && friction.creep.is_none() {
+            self.fault(
+                friction.name.span,
+                &missing("creep", "what touches in space slides in two directions, and does not stick"),
+            );
         }
         if let Some(radius) = &friction.radius {
             if axis.slides() {

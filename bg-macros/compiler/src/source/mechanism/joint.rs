@@ -10,7 +10,7 @@
 use super::attachment::stiff;
 use super::shapes::CENTER;
 use super::{End, Expansion, MechanismFault, is_vector};
-use crate::source::ast::{Axis, Expression, ExpressionKind, Item, Joint, JointKind, PressLaw};
+use crate::source::ast::{Axis, Expression, ExpressionKind, Item, Joint, JointKind};
 use crate::source::clause::{Allowed, Clause, Given};
 
 impl JointKind {
@@ -60,7 +60,7 @@ impl Expansion<'_> {
         if self.play_fits(joint) && is_complete {
             self.translations(joint, &a, &b);
             let has_moment = self.rotations(joint, &a, &b);
-            self.draw_joint((name, joint.kind.to_string()), &joint.ends, (&a, &b), has_moment);
+            self.draw_joint((name, joint.kind.to_string()), &joint.ends, [&a.position, &b.position], has_moment);
             self.motion(joint, &a, &b);
         }
     }
@@ -118,10 +118,8 @@ impl Expansion<'_> {
     }
 
     /// A pin in a hole that is wider: along its axis held as others, across it pushed back where the play ends.
-    fn play(&mut self, joint: &Joint, (axis, clearance): (Axis, &Expression), a: &End, b: &End) {
+    fn pin_with_play(&mut self, joint: &Joint, axis: Axis, a: &End, b: &End) {
         let (name, span) = (&joint.name.text, joint.name.span);
-        let clause = Clause::new(format!("the clearance of joint `{name}`"), 1).allowed(Allowed::Positive);
-        self.bind(&format!("{name}.clearance"), "m", clearance, clause);
         self.force_junction(span, name, (a, b), (a.arm_to(&b.position), b.arm.clone()));
         let (letter, along) = (axis.letter(), format!("{}.{}_axis", a.axes, axis.letter()));
         self.text(
@@ -141,50 +139,98 @@ impl Expansion<'_> {
                 b.position, a.position
             ),
         );
-        let law = PressLaw {
-            stiffness: joint.stiffness.clone(),
-            damping: joint.damping.clone(),
-            restitution: joint.restitution.clone(),
-            ..PressLaw::default()
-        };
-        self.press(&joint.name, &law, &format!("{name}.clearance - {name}.eccentricity"));
+        self.press(&joint.name, &joint.press_law(), (name, &format!("{name}.clearance - {name}.eccentricity")));
     }
 
-    /// Reports a clearance or a restitution where there can be none.
+    /// A slider between two guides across each axis that it holds: pushed back where the play ends, at its end, or
+    /// where it has a length at two places that are so far apart.
+    fn slider_with_play(&mut self, joint: &Joint, slide: Axis, a: &End, b: &End) {
+        let (name, span) = (&joint.name.text, joint.name.span);
+        self.text(span, &format!("let {name}.gap: m = {} - {};", b.position, a.position));
+        let places = if joint.length.is_some() {
+            let along = format!("{}.{}_axis", b.axes, slide.letter());
+            let ends = [("front", "+"), ("rear", "-")];
+            ends.map(|(end, sign)| (format!("{name}.{end}"), format!(" {sign} (0.5 * {name}.length) * {along}"))).into()
+        } else {
+            vec![(name.clone(), String::new())]
+        };
+        let mut pressed = Vec::new();
+        for (place, from_end) in &places {
+            let position = format!("({}{from_end})", b.position);
+            self.force_junction(span, place, (a, b), (a.arm_to(&position), b.arm_to(&position)));
+            for axis in Axis::ALL.into_iter().filter(|&axis| axis != slide) {
+                let (letter, side) = (axis.letter(), format!("{place}.{}", axis.letter()));
+                let across = format!("{}.{letter}_axis", a.axes);
+                self.text(
+                    span,
+                    &format!(
+                        "let {side}_offset: m = dot({across}, {position} - {}); close {name} = {side}_offset;
+                         let {side}_off: m = sqrt(pow({side}_offset, 2) + pow({CENTER} * {name}.clearance, 2));
+                         let {side}_inward: 1 = -{across} * ({side}_offset / {side}_off);
+                         1 {side}.approach: translation; MTF {side}.axis(v) = dot({side}_inward, v);
+                         {place}.slip -> {side}.axis -> {side}.approach;",
+                        a.position
+                    ),
+                );
+                self.press(&joint.name, &joint.press_law(), (&side, &format!("{name}.clearance - {side}_off")));
+                pressed.push(format!("{side}.pressed"));
+            }
+        }
+        if joint.length.is_some() {
+            let middle = self.is_used(joint, "slide").then(|| format!("{name}.middle.force"));
+            let forces: Vec<String> = places.iter().map(|(place, _)| format!("{place}.force")).chain(middle).collect();
+            self.text(span, &format!("let {name}.force = {};", forces.join(" + ")));
+        }
+        self.text(span, &format!("let {name}.pressed: N = {};", pressed.join(" + ")));
+    }
+
+    /// Binds the clearance and what belongs to it; false, with a fault, where there can be none.
     fn play_fits(&mut self, joint: &Joint) -> bool {
         let name = &joint.name.text;
         let fault = |clause, why| MechanismFault::SuperfluousClause { word: "joint", name: name.clone(), clause, why };
         let faults = self.faults.len();
-        if let Some(clearance) = &joint.clearance {
-            if joint.rigid {
-                self.fault(clearance.span, &fault("clearance", "a rigid joint has no play"));
-            } else if joint.kind.spin().is_none() || joint.kind.slide().is_some() {
-                self.fault(clearance.span, &fault("clearance", "only a revolute joint has a pin in a hole"));
+        let Some(clearance) = &joint.clearance else {
+            let length = joint.length.as_ref().map(|value| ("length", value));
+            let mut play = joint.play.clone();
+            let clauses = play.play_mut().map(|(clause, value)| Some((clause, &*value.as_ref()?)));
+            for (clause, value) in length.into_iter().chain(clauses.into_iter().flatten()) {
+                self.fault(value.span, &fault(clause, "it has no `clearance`"));
             }
-            for (clause, value) in [("stiffness", &joint.stiffness), ("damping", &joint.damping)] {
-                if let Some(value) = value.as_ref().filter(|value| is_vector(value)) {
-                    self.fault(value.span, &fault(clause, "with a `clearance` it is one number in all directions"));
-                }
+            return self.faults.len() == faults;
+        };
+        let is_slider = matches!(joint.kind, JointKind::Prismatic(_));
+        if joint.rigid {
+            self.fault(clearance.span, &fault("clearance", "a rigid joint has no play"));
+        } else if !is_slider && !matches!(joint.kind, JointKind::Revolute(_)) {
+            self.fault(clearance.span, &fault("clearance", "only revolute and prismatic joints have play"));
+        }
+        for (clause, value) in [("stiffness", &joint.stiffness), ("damping", &joint.damping)] {
+            if let Some(value) = value.as_ref().filter(|value| is_vector(value)) {
+                self.fault(value.span, &fault(clause, "with a `clearance` it is one number in all directions"));
             }
         }
-        match (&joint.restitution, &joint.clearance, &joint.damping) {
-            (Some(value), None, _) => self.fault(value.span, &fault("restitution", "it has no `clearance`")),
-            (Some(value), _, Some(_)) => self.fault(value.span, &fault("restitution", "it has a `damping`")),
-            (Some(value), Some(_), None) => {
-                let clause = Clause::new(format!("the restitution of joint `{name}`"), 1).allowed(Allowed::Part);
-                self.bind(&format!("{name}.restitution"), "1", value, clause);
-            }
-            (None, ..) => {}
+        let clause = |what: &str| Clause::new(format!("the {what} of joint `{name}`"), 1).allowed(Allowed::Positive);
+        self.bind(&format!("{name}.clearance"), "m", clearance, clause("clearance"));
+        match &joint.length {
+            Some(length) if is_slider => self.bind(&format!("{name}.length"), "m", length, clause("length")),
+            Some(length) => self.fault(length.span, &fault("length", "a pin touches at one place only")),
+            None => {}
         }
+        self.press_options("joint", &joint.name, &joint.press_law());
         self.faults.len() == faults
     }
 
     fn translations(&mut self, joint: &Joint, a: &End, b: &End) {
         let (name, span) = (&joint.name.text, joint.name.span);
-        if let (Some(clearance), Some(axis)) = (&joint.clearance, joint.kind.spin()) {
-            return self.play(joint, (axis, clearance), a, b);
-        }
         let slide = joint.kind.slide();
+        match joint.kind {
+            JointKind::Revolute(axis) if joint.clearance.is_some() => return self.pin_with_play(joint, axis, a, b),
+            JointKind::Prismatic(axis) if joint.clearance.is_some() => {
+                self.slider_with_play(joint, axis, a, b);
+                return self.free_slide(joint, axis, a, b);
+            }
+            _ => {}
+        }
         let has_axes = |value: &Option<Expression>| value.as_ref().is_some_and(is_vector);
         let per_axis = !joint.rigid && (has_axes(&joint.stiffness) || has_axes(&joint.damping));
         if slide.is_none() && !per_axis {
@@ -246,26 +292,44 @@ impl Expansion<'_> {
                 self.text(span, &format!("R {label}_damper = {damping}; {label} -> {label}_damper;"));
             }
         }
-        if let Some(axis) = slide
-            && self.is_used(joint, "slide")
-        {
-            self.text(
-                span,
-                &format!(
-                    "1 {name}.slide: translation; MTF {name}.slide_axis(v) = dot({}.{}_axis, v);
-                     {name}.slip -> {name}.slide_axis -> {name}.slide;",
-                    a.axes,
-                    axis.letter()
-                ),
-            );
+        if let Some(axis) = slide {
+            self.free_slide(joint, axis, a, b);
         }
+    }
+
+    /// The junction of the free translation, where something acts on it; of a slider with a length, which has no junction
+    /// in its middle, with that.
+    fn free_slide(&mut self, joint: &Joint, axis: Axis, a: &End, b: &End) {
+        if !self.is_used(joint, "slide") {
+            return;
+        }
+        let (name, span) = (&joint.name.text, joint.name.span);
+        let middle = if joint.length.is_some() { format!("{name}.middle") } else { name.clone() };
+        if joint.length.is_some() {
+            self.force_junction(span, &middle, (a, b), (a.arm_to(&b.position), b.arm.clone()));
+        }
+        self.text(
+            span,
+            &format!(
+                "1 {name}.slide: translation; MTF {name}.slide_axis(v) = dot({}.{}_axis, v);
+                 {middle}.slip -> {name}.slide_axis -> {name}.slide;",
+                a.axes,
+                axis.letter()
+            ),
+        );
     }
 
     /// The held rotations and the free one; false where there is neither.
     fn rotations(&mut self, joint: &Joint, a: &End, b: &End) -> bool {
         let (name, span) = (&joint.name.text, joint.name.span);
         let spin = joint.kind.spin().filter(|_| self.is_used(joint, "spin"));
-        let held = held_rotations(joint.kind, &a.axes, &b.axes);
+        let (held, tilting): (Vec<_>, Vec<_>) = held_rotations(joint.kind, &a.axes, &b.axes)
+            .into_iter()
+            .partition(|rotation| joint.length.is_none() || joint.kind.slide() == Some(rotation.axis));
+        for rotation in tilting {
+            // It starts in the middle of its play.
+            self.text(span, &format!("close {name} = {};", rotation.displacement));
+        }
         if held.is_empty() && spin.is_none() {
             return false;
         }

@@ -71,6 +71,8 @@ struct Expansion<'a> {
     source: &'a Graph,
     items: Vec<Item>,
     drawing: Drawing<Expression>,
+    /// What is seen of shapes that touch, with the body or the ground that has it.
+    seen: Vec<(String, crate::source::drawing::Solid<Expression>)>,
     bodies: BTreeMap<&'a str, &'a Body>,
     joints: BTreeMap<&'a str, &'a Joint>,
     /// The first ground; the points of all.
@@ -86,6 +88,7 @@ impl<'a> Expansion<'a> {
             source,
             items: Vec::new(),
             drawing: Drawing::default(),
+            seen: Vec::new(),
             bodies: BTreeMap::new(),
             joints: BTreeMap::new(),
             ground: None,

@@ -28,11 +28,19 @@ const STEPS: usize = 6;
 impl Expansion<'_> {
     /// Binds the clauses of a law; false where one is missing.
     pub(super) fn press_clauses(&mut self, word: &'static str, name: &Name, law: &PressLaw) -> bool {
-        let text = &name.text;
         if law.stiffness.is_none() {
             let (clause, why) = ("stiffness", "the shapes give way where they touch");
-            self.fault(name.span, &MechanismFault::MissingClause { word, name: text.clone(), clause, why });
+            self.fault(name.span, &MechanismFault::MissingClause { word, name: name.text.clone(), clause, why });
         }
+        self.press_clause((word, name), ("stiffness", "N/m"), law.stiffness.as_ref(), Allowed::NotNegative);
+        self.press_clause((word, name), ("damping", "N*s/m"), law.damping.as_ref(), Allowed::NotNegative);
+        self.press_options(word, name, law);
+        law.stiffness.is_some()
+    }
+
+    /// Binds the clauses of a law but for its stiffness and its damping.
+    pub(super) fn press_options(&mut self, word: &'static str, name: &Name, law: &PressLaw) {
+        let text = &name.text;
         let lossy = [("damping", &law.damping), ("dissipation", &law.dissipation), ("restitution", &law.restitution)];
         let mut given = lossy.into_iter().filter_map(|(clause, value)| Some((clause, value.as_ref()?)));
         given.next();
@@ -45,9 +53,7 @@ impl Expansion<'_> {
             self.fault(rest.span, &MechanismFault::SuperfluousClause { word, name: text.clone(), clause, why });
         }
         let clauses = [
-            ("stiffness", "N/m", &law.stiffness, Allowed::NotNegative),
             ("exponent", "1", &law.exponent, Allowed::Positive),
-            ("damping", "N*s/m", &law.damping, Allowed::NotNegative),
             ("dissipation", "s/m", &law.dissipation, Allowed::NotNegative),
             ("restitution", "1", &law.restitution, Allowed::Part),
             ("rest", "m/s", &law.rest, Allowed::Positive),
@@ -55,7 +61,6 @@ impl Expansion<'_> {
         for (clause, unit, value, allowed) in clauses {
             self.press_clause((word, name), (clause, unit), value.as_ref(), allowed);
         }
-        law.stiffness.is_some()
     }
 
     fn press_clause(
@@ -70,9 +75,9 @@ impl Expansion<'_> {
         self.bind(&format!("{}.{clause}", name.text), unit, value, words.given(Given::Constant).allowed(allowed));
     }
 
-    /// The C and the R of a law whose clauses are bound: on the junction `NAME.approach`, whose flow is the rate of
-    /// `gap`.
-    pub(super) fn press(&mut self, name: &Name, law: &PressLaw, gap: &str) {
+    /// The C and the R of a law whose clauses are bound: on the junction `PLACE.approach`, whose flow is the rate of
+    /// `gap`. The place is the name itself where it touches at one only.
+    pub(super) fn press(&mut self, name: &Name, law: &PressLaw, (place, gap): (&str, &str)) {
         let (span, name) = (name.span, &name.text);
         // k q (q^2 + s^2)^((n - 1) / 2): smooth where they touch, with its integral.
         let power = |by: &str| format!("pow(q * q / (1 m * 1 m) + {NEAR} * {NEAR}, ({name}.exponent {by}) / 2)");
@@ -89,39 +94,39 @@ impl Expansion<'_> {
         self.text(
             span,
             &format!(
-                "C {name}.spring(q) = if q < 0 {{ {force} }} else {{ 0 }} at {gap}
+                "C {place}.spring(q) = if q < 0 {{ {force} }} else {{ 0 }} at {gap}
                      energy if q < 0 {{ {energy} }} else {{ 0 }};
-                 {name}.approach -> {name}.spring;"
+                 {place}.approach -> {place}.spring;"
             ),
         );
-        let Some(damping) = self.damping_of(name, law, span) else {
-            return self.text(span, &format!("let {name}.pressed: N = -{name}.spring.effort;"));
+        let Some(damping) = self.damping_of((name, place), law, span) else {
+            return self.text(span, &format!("let {place}.pressed: N = -{place}.spring.effort;"));
         };
         self.text(
             span,
             &format!(
-                "MR {name}.damper(v) = if {name}.spring.q < 0 {{
-                     if {name}.spring.effort + {damping} * v > 0 {{ -{name}.spring.effort }} else {{ {damping} * v }}
+                "MR {place}.damper(v) = if {place}.spring.q < 0 {{
+                     if {place}.spring.effort + {damping} * v > 0 {{ -{place}.spring.effort }} else {{ {damping} * v }}
                  }} else {{ 0 }};
-                 {name}.approach -> {name}.damper;
-                 let {name}.pressed: N = -({name}.spring.effort + {name}.damper.effort);"
+                 {place}.approach -> {place}.damper;
+                 let {place}.pressed: N = -({place}.spring.effort + {place}.damper.effort);"
             ),
         );
     }
 
     /// The force over the speed of a law with damping, beside the depth's.
-    fn damping_of(&mut self, name: &str, law: &PressLaw, span: proc_macro2::Span) -> Option<String> {
+    fn damping_of(&mut self, (name, place): (&str, &str), law: &PressLaw, span: proc_macro2::Span) -> Option<String> {
         if law.damping.is_some() {
             return Some(format!("{name}.damping"));
         }
         if law.dissipation.is_some() {
-            return Some(format!("(-1.5 * {name}.dissipation * {name}.spring.effort)"));
+            return Some(format!("(-1.5 * {name}.dissipation * {place}.spring.effort)"));
         }
         law.restitution.as_ref()?;
         // Newton's method for y = ln(1 - e x).
-        let mut steps = format!("let {name}.loss_0 = 2 * ln({name}.restitution);");
+        let mut steps = format!("let {place}.loss_0 = 2 * ln({name}.restitution);");
         for step in 0..STEPS {
-            let (before, after) = (format!("{name}.loss_{step}"), format!("{name}.loss_{}", step + 1));
+            let (before, after) = (format!("{place}.loss_{step}"), format!("{place}.loss_{}", step + 1));
             steps += &format!(
                 "let {before}.rest = exp({before}); let {before}.root = (1 - {before}.rest) / {name}.restitution;
                  let {after} = {before} - ({before} - ln(1 + {before}.root) + {before}.root * (1 + {name}.restitution))
@@ -133,12 +138,12 @@ impl Expansion<'_> {
             span,
             &format!(
                 "{steps}
-                 let {name}.loss: 1 = (1 - exp({name}.loss_{STEPS})) / {name}.restitution;
-                 memory {name}.meeting: 1 = -{name}.approach.flow / {slow} while {name}.spring.q > 0;
-                 let {name}.impact: m/s = {slow} * {name}.meeting;
-                 let {name}.hit: m/s = {slow} * sqrt(sqrt(sqrt(1 + pow({name}.meeting.kept, 8))));"
+                 let {place}.loss: 1 = (1 - exp({place}.loss_{STEPS})) / {name}.restitution;
+                 memory {place}.meeting: 1 = -{place}.approach.flow / {slow} while {place}.spring.q > 0;
+                 let {place}.impact: m/s = {slow} * {place}.meeting;
+                 let {place}.hit: m/s = {slow} * sqrt(sqrt(sqrt(1 + pow({place}.meeting.kept, 8))));"
             ),
         );
-        Some(format!("(-{name}.loss * {name}.spring.effort / {name}.hit)"))
+        Some(format!("(-{place}.loss * {place}.spring.effort / {place}.hit)"))
     }
 }

@@ -10,7 +10,9 @@
 
 use super::{End, Expansion, MechanismFault};
 use crate::fault::near_miss;
-use crate::source::ast::{Axis, Between, Beyond, Item, Name, ShapeContact, Table, Touching};
+use crate::source::ast::{
+    Axis, Between, Beyond, Expression, ExpressionKind, Item, Name, ShapeContact, Table, Touching,
+};
 use crate::source::clause::{Allowed, Clause};
 
 /// What is smooth in the place of a distance from the middle of a hole, beside the play: off by its square.
@@ -35,8 +37,20 @@ struct Geometry {
 struct Side<'c> {
     shape: &'c Touching,
     end: &'c End,
-    /// The name of its radius; 0 of a point and of what is flat.
-    radius: String,
+    /// What the names of its sizes begin with: `CONTACT.first_`.
+    sizes: String,
+}
+
+impl Side<'_> {
+    /// The name of a size.
+    fn size(&self, word: &str) -> String {
+        format!("{}{word}", self.sizes)
+    }
+
+    /// The radius of what is round; 0 of a point.
+    fn radius(&self) -> String {
+        if matches!(self.shape, Touching::Point) { "0".to_owned() } else { self.size("radius") }
+    }
 }
 
 impl Expansion<'_> {
@@ -77,37 +91,53 @@ impl Expansion<'_> {
                  {name}.push.slip -> {name}.axis -> {name}.approach; let {name}.speed: m/s = {name}.approach.flow;"
             ),
         );
-        self.press(&contact.name, &contact.law, &format!("{name}.gap"));
+        self.press(&contact.name, &contact.law, (name, &format!("{name}.gap")));
         let slides = self.is_braked(&format!("{name}.slide"));
         let mut force = format!("{name}.push.force");
-        if let (true, Some(plane)) = (slides, &geometry.plane) {
+        if slides {
             self.force_junction(span, &format!("{name}.rub"), (&a, &b), arms(&format!("{name}.place")));
+            let (count, sliding) = match &geometry.plane {
+                Some(plane) => ("", format!("dot(cross({plane}, {name}.normal), v)")),
+                None => ("[3]", format!("v - {name}.normal * dot({name}.normal, v)")),
+            };
             self.text(
                 span,
                 &format!(
-                    "1 {name}.slide: translation; MTF {name}.slide_axis(v) = dot(cross({plane}, {name}.normal), v);
+                    "1 {name}.slide{count}: translation; MTF {name}.slide_axis(v) = {sliding};
                      {name}.rub.slip -> {name}.slide_axis -> {name}.slide;"
                 ),
             );
             force = format!("{force} + {name}.rub.force");
         }
         self.text(span, &format!("let {name}.force = {force};"));
-        self.draw_joint((&contact.name, "contact".to_owned()), &contact.ends, (&a, &b), false);
+        let place = format!("{name}.place");
+        self.draw_joint((&contact.name, "contact".to_owned()), &contact.ends, [&place, &place], false);
+        let radii = contact.shapes.each_ref().map(|shape| shape.sizes().first().map(|(word, _)| *word));
+        for (index, end) in [&contact.ends.from, &contact.ends.to].into_iter().enumerate() {
+            let [own, other] = [index, 1 - index].map(|index| sizes_of(name, index));
+            let beside = radii[1 - index].filter(|word| *word == "radius").map(|word| format!("{other}{word}"));
+            self.draw_shape(&contact.shapes[index], (end, ends[index]), &own, beside.as_deref());
+        }
     }
 
-    /// A side with its radius bound.
+    /// A side with its sizes bound.
     fn side<'c>(&mut self, contact: &'c ShapeContact, index: usize, end: &'c End) -> Side<'c> {
         let (name, shape) = (&contact.name.text, &contact.shapes[index]);
-        let radius = match shape.radius() {
-            Some(value) => {
-                let radius = format!("{name}.{}_radius", ["first", "second"][index]);
-                let clause = Clause::new(format!("the radius of the {} of contact `{name}`", shape.word()), 1);
-                self.bind(&radius, "m", value, clause.allowed(Allowed::Positive));
-                radius
-            }
-            None => "0".to_owned(),
-        };
-        Side { shape, end, radius }
+        let sizes = sizes_of(name, index);
+        for (word, value) in shape.sizes() {
+            let (what, unit, allowed) = match word {
+                "from" | "to" => (format!("the angle after `{word}`"), "rad", Allowed::Any),
+                _ => (format!("the {word}"), "m", Allowed::Positive),
+            };
+            let clause = Clause::new(format!("{what} of the {} of contact `{name}`", shape.word()), 1);
+            self.bind(&format!("{sizes}{word}"), unit, value, clause.allowed(allowed));
+        }
+        if let Touching::Arc([.., to]) = shape {
+            let clause = Clause::new(format!("the angle of the arc of contact `{name}`, `to` minus `from`,"), 1);
+            let clause = clause.allowed(Allowed::Positive);
+            self.text_as(to.span, &format!("let {sizes}opening: rad = {sizes}to - {sizes}from;"), &clause);
+        }
+        Side { shape, end, sizes }
     }
 
     /// How two shapes meet, the first of which has the axes; `sign` turns what the second body does against the first
@@ -128,6 +158,16 @@ impl Expansion<'_> {
             (T::Line(axis), T::Point | T::Circle(_)) => {
                 let normal = self.line_normal(contact, &first.end.axes, *axis)?;
                 Some(on_flat(name, second, normal, Some(plane_of(first))))
+            }
+            (T::Segment(axis, _), T::Circle(_)) | (T::Slot(axis, _), T::Point | T::Circle(_)) => {
+                let normal = self.line_normal(contact, &first.end.axes, *axis)?;
+                Some(self.round_at_segment(contact, (first, second), (*axis, normal)))
+            }
+            (T::Arc(_), T::Circle(_)) => Some(self.round_at_arc(contact, (first, second))),
+            (T::Segment(..) | T::Arc(_), T::Point) => {
+                let (name, word) = (name.clone(), first.shape.word());
+                self.fault(contact.name.span, &MechanismFault::Thin { name, word });
+                None
             }
             (T::Plane(axis), T::Point | T::Sphere(_)) => {
                 let normal = format!("{}.{}_axis", first.end.axes, axis.letter());
@@ -164,7 +204,7 @@ impl Expansion<'_> {
     fn round(&mut self, contact: &ShapeContact, (first, second): (&Side, &Side), plane: Option<String>) -> Geometry {
         let (name, span) = (&contact.name.text, contact.name.span);
         let is_inside = matches!(first.shape, Touching::Hole(_));
-        let [inner, outer] = [&second.radius, &first.radius];
+        let [inner, outer] = [second.radius(), first.radius()];
         let smooth = if is_inside { format!(" + pow({CENTER} * ({outer} - {inner}), 2)") } else { String::new() };
         let (off, across) = match &plane {
             Some(z) => (format!(" - pow(dot({z}, {name}.between), 2)"), format!(" - {z} * dot({z}, {name}.between)")),
@@ -177,23 +217,68 @@ impl Expansion<'_> {
                  let {name}.apart: 1 = ({name}.between{across}) / {name}.distance;"
             ),
         );
-        let (gap, direction) = if is_inside {
-            (format!("({outer} - {inner}) - {name}.distance"), format!("(-{name}.apart)"))
-        } else {
-            (format!("{name}.distance - ({outer} + {inner})"), format!("{name}.apart"))
-        };
-        let place = second.end.position.clone();
-        let touch = format!("{place} - {inner} * {direction}");
-        Geometry { gap, direction: direction.clone(), place, normal: direction, touch, plane }
+        let play = format!("({outer} - {inner})");
+        let gap = format!("{name}.distance - ({outer} + {inner})");
+        let geometry = around(name, (first, second), if is_inside { Some(&play) } else { None });
+        Geometry { plane, gap: if is_inside { geometry.gap } else { gap }, ..geometry }
+    }
+
+    /// A circle at a thin wall of finite length, or what is in a slot around one.
+    fn round_at_segment(
+        &mut self,
+        contact: &ShapeContact,
+        (first, second): (&Side, &Side),
+        (axis, across): (Axis, String),
+    ) -> Geometry {
+        let (name, span) = (&contact.name.text, contact.name.span);
+        let (along, length) = (format!("{}.{}_axis", first.end.axes, axis.letter()), first.size("length"));
+        let play = format!("({} / 2 - {})", first.size("width"), second.radius());
+        let is_inside = matches!(first.shape, Touching::Slot(..));
+        let smooth = if is_inside { format!(" + pow({CENTER} * {play}, 2)") } else { String::new() };
+        self.text(
+            span,
+            &format!(
+                "let {name}.lengthwise: m = dot({along}, {name}.between);
+                 let {name}.across: m = dot({across}, {name}.between);
+                 let {name}.past: m = if {name}.lengthwise < 0 {{ {name}.lengthwise }} else {{
+                     if {name}.lengthwise > {length} {{ {name}.lengthwise - {length} }} else {{ 0 }} }};
+                 let {name}.distance: m = sqrt({name}.past * {name}.past + {name}.across * {name}.across{smooth});
+                 let {name}.apart: 1 = ({along} * {name}.past + {across} * {name}.across) / {name}.distance;"
+            ),
+        );
+        around(name, (first, second), if is_inside { Some(&play) } else { None })
+    }
+
+    /// A circle at a thin wall that is a part of a circle: at its inside, its outside or its ends.
+    fn round_at_arc(&mut self, contact: &ShapeContact, (first, second): (&Side, &Side)) -> Geometry {
+        let (name, span) = (&contact.name.text, contact.name.span);
+        let axes = &first.end.axes;
+        let [radius, from, to, opening] = ["radius", "from", "to", "opening"].map(|word| first.size(word));
+        // In axes whose first one points to the middle of the arc.
+        self.text(
+            span,
+            &format!(
+                "let {name}.middle: rad = 0.5 * ({from} + {to}); let {name}.half: rad = 0.5 * {opening};
+                 let {name}.ahead: 1 = {axes}.x_axis * cos({name}.middle) + {axes}.y_axis * sin({name}.middle);
+                 let {name}.aside: 1 = {axes}.y_axis * cos({name}.middle) - {axes}.x_axis * sin({name}.middle);
+                 let {name}.cx: m = dot({name}.ahead, {name}.between); let {name}.cy: m = dot({name}.aside, {name}.between);
+                 let {name}.far: m = sqrt({name}.cx * {name}.cx + {name}.cy * {name}.cy + pow({CENTER} * {radius}, 2));
+                 let {name}.past: m = {name}.far * cos({name}.half) - {name}.cx;
+                 let {name}.end: m = if {name}.cy < 0 {{ -{radius} * sin({name}.half) }} else {{ {radius} * sin({name}.half) }};
+                 let {name}.out: 1 = ({name}.far - {radius}) / {name}.far;
+                 let {name}.ux: m = if {name}.past < 0 {{ {name}.cx * {name}.out }} else {{ {name}.cx - {radius} * cos({name}.half) }};
+                 let {name}.uy: m = if {name}.past < 0 {{ {name}.cy * {name}.out }} else {{ {name}.cy - {name}.end }};
+                 let {name}.distance: m = sqrt(if {name}.past < 0 {{ pow({name}.far - {radius}, 2) }}
+                     else {{ {name}.ux * {name}.ux + {name}.uy * {name}.uy }});
+                 let {name}.apart: 1 = ({name}.ahead * {name}.ux + {name}.aside * {name}.uy) / {name}.distance;"
+            ),
+        );
+        around(name, (first, second), None)
     }
 
     /// The table of a profile; whether it is one of an angle. None with a fault.
     fn profile(&mut self, contact: &ShapeContact, profile: &Name) -> Option<Polar> {
-        let found = self.source.items.iter().find_map(|item| match item {
-            Item::Table(table) if table.name.text == profile.text => Some(table),
-            _ => None,
-        });
-        let Some(Table { argument, between, beyond, .. }) = found else {
+        let Some(Table { between, beyond, .. }) = self.table(profile) else {
             let near = self.source.items.iter().filter_map(|item| match item {
                 Item::Table(table) => Some(table.name.text.as_str()),
                 _ => None,
@@ -202,7 +287,7 @@ impl Expansion<'_> {
             self.fault(profile.span, &MechanismFault::UnknownTable { name: profile.text.clone(), near });
             return None;
         };
-        let is_angle = argument.meaning().is_some_and(|unit| unit.dimension == bg_units::Dimension::NONE);
+        let is_angle = self.is_outline(profile);
         let table = profile.text.clone();
         if *between == Between::Straight {
             self.fault(profile.span, &MechanismFault::RoughProfile { table, contact: contact.name.text.clone() });
@@ -213,6 +298,33 @@ impl Expansion<'_> {
             return None;
         }
         Some(Polar { table, is_angle })
+    }
+
+    /// The table of this name.
+    fn table(&self, name: &Name) -> Option<&Table> {
+        self.source.items.iter().find_map(|item| match item {
+            Item::Table(table) if table.name.text == name.text => Some(table),
+            _ => None,
+        })
+    }
+
+    /// Whether a profile goes around the point of its end: its argument is an angle.
+    fn is_outline(&self, profile: &Name) -> bool {
+        let unit = self.table(profile).and_then(|table| table.argument.meaning());
+        unit.is_some_and(|unit| unit.dimension == bg_units::Dimension::NONE)
+    }
+
+    /// The places of a profile's points, m, in the axes of its end.
+    pub(super) fn outline(&self, profile: &Name) -> Vec<[f64; 2]> {
+        let Some(Table { argument, value, points, .. }) = self.table(profile) else { return Vec::new() };
+        let scales = [argument, value].map(|unit| unit.meaning().map_or(1.0, |unit| unit.size()));
+        let rows = if let ExpressionKind::Vector(rows) = &points.kind { &rows[..] } else { &[] };
+        let place = |row: &Expression| {
+            let ExpressionKind::Vector(pair) = &row.kind else { return None };
+            let [at, of] = [pair.first()?.number()? * scales[0], pair.get(1)?.number()? * scales[1]];
+            Some(if self.is_outline(profile) { [of * at.cos(), of * at.sin()] } else { [at, of] })
+        };
+        rows.iter().filter_map(place).collect()
     }
 
     /// A profile at the displacement q: its point p, p' and p'' in the axes of its body, `NAME.px` and so on.
@@ -297,10 +409,10 @@ impl Expansion<'_> {
         self.along(contact, polar.is_angle, (&format!("{name}.push.slip"), &rate), (&stationary, &guess));
         let place = second.end.position.clone();
         Geometry {
-            gap: format!("{name}.nx * {name}.ux + {name}.ny * {name}.uy - {}", second.radius),
+            gap: format!("{name}.nx * {name}.ux + {name}.ny * {name}.uy - {}", second.radius()),
             direction: format!("{name}.upright + {name}.tangent * ({name}.turning / {name}.curved)"),
             normal: format!("{name}.upright"),
-            touch: format!("{place} - {} * {name}.upright", second.radius),
+            touch: format!("{place} - {} * {name}.upright", second.radius()),
             place,
             plane: Some(plane_of(first)),
         }
@@ -348,6 +460,11 @@ impl Expansion<'_> {
     }
 }
 
+/// What the names of the sizes of a contact's first or second shape begin with.
+fn sizes_of(contact: &str, index: usize) -> String {
+    format!("{contact}.{}_", ["first", "second"][index])
+}
+
 /// The table of a profile.
 struct Polar {
     table: String,
@@ -355,13 +472,25 @@ struct Polar {
     is_angle: bool,
 }
 
+/// What is round beside what it has the distance `NAME.distance` from, in the direction `NAME.apart`; or inside of what is
+/// as far around it as `play`.
+fn around(name: &str, (first, second): (&Side, &Side), play: Option<&str>) -> Geometry {
+    let (place, radius) = (second.end.position.clone(), second.radius());
+    let (gap, direction) = match play {
+        Some(play) => (format!("{play} - {name}.distance"), format!("(-{name}.apart)")),
+        None => (format!("{name}.distance - {radius}"), format!("{name}.apart")),
+    };
+    let touch = format!("{place} - {radius} * {direction}");
+    Geometry { gap, direction: direction.clone(), place, normal: direction, touch, plane: Some(plane_of(first)) }
+}
+
 /// What is round on what is flat.
 fn on_flat(name: &str, second: &Side, normal: String, plane: Option<String>) -> Geometry {
     let place = second.end.position.clone();
     Geometry {
-        gap: format!("dot({normal}, {name}.between) - {}", second.radius),
+        gap: format!("dot({normal}, {name}.between) - {}", second.radius()),
         direction: normal.clone(),
-        touch: format!("{place} - {} * {normal}", second.radius),
+        touch: format!("{place} - {} * {normal}", second.radius()),
         normal,
         place,
         plane,

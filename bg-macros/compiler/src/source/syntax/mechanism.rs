@@ -22,7 +22,20 @@ const GROUND: Place = Place { name: "`ground`", words: &["point"], list: false }
 /// The block of a joint.
 const JOINT: Place = Place {
     name: "a joint",
-    words: &["stiffness", "damping", "tilt stiffness", "tilt damping", "frame inertial", "clearance", "restitution"],
+    words: &[
+        "stiffness",
+        "damping",
+        "tilt stiffness",
+        "tilt damping",
+        "frame inertial",
+        "rigid",
+        "clearance",
+        "length",
+        "exponent",
+        "dissipation",
+        "restitution",
+        "rest below",
+    ],
     list: false,
 };
 
@@ -43,7 +56,7 @@ const SHAPE_CONTACT: Place = Place {
 };
 
 /// The shapes that touch.
-const SHAPES: &[&str] = &["circle", "hole", "sphere", "line", "plane", "profile"];
+const SHAPES: &[&str] = &["circle", "hole", "sphere", "line", "plane", "segment", "slot", "arc", "profile"];
 
 /// Inside of `(a.P -> b.Q)`.
 const ENDS: Place = Place { name: "the parentheses", words: &[], list: false };
@@ -171,7 +184,8 @@ impl Cursor<'_> {
             tilt_stiffness: None,
             tilt_damping: None,
             clearance: None,
-            restitution: None,
+            length: None,
+            play: PressLaw::default(),
             inertial: false,
             rigid: false,
         };
@@ -186,14 +200,16 @@ impl Cursor<'_> {
                 entry.end_statement("");
                 return Ok(());
             }
-            entry.setting(&mut [
+            let mut slots = vec![
                 ("stiffness", &mut joint.stiffness),
                 ("damping", &mut joint.damping),
                 ("tilt stiffness", &mut joint.tilt_stiffness),
                 ("tilt damping", &mut joint.tilt_damping),
                 ("clearance", &mut joint.clearance),
-                ("restitution", &mut joint.restitution),
-            ])
+                ("length", &mut joint.length),
+            ];
+            slots.extend(joint.play.play_mut());
+            entry.setting(&mut slots)
         });
         joint.inertial = inertial.is_some();
         joint.rigid = rigid.is_some();
@@ -378,6 +394,19 @@ impl Cursor<'_> {
             "sphere" => Touching::Sphere(self.expression()?),
             "line" => Touching::Line(self.axis(&word, span)?),
             "plane" => Touching::Plane(self.axis(&word, span)?),
+            "segment" => Touching::Segment(self.axis(&word, span)?, self.expression()?),
+            "slot" => {
+                let (axis, length) = (self.axis(&word, span)?, self.expression()?);
+                self.expect_word("width")?;
+                Touching::Slot(axis, [length, self.expression()?])
+            }
+            "arc" => {
+                let radius = self.expression()?;
+                self.expect_word("from")?;
+                let from = self.expression()?;
+                self.expect_word("to")?;
+                Touching::Arc([radius, from, self.expression()?])
+            }
             _ => Touching::Profile(self.name("the table of the profile")?),
         }))
     }
