@@ -360,8 +360,87 @@ fn a_geneva_wheel_goes_on_by_two_quarters() {
     assert!((found[1] + PI).abs() < 3.0 * LOOSE / (EDGE * FACE.sin()), "{}", found[1]);
 }
 
+#[test]
+fn rigid_discs_part_along_the_line_of_their_centres() {
+    let text = "graph Discs {
+        param e: 1 = 0.6, at least 0, at most 1;
+        body one { mass 0.7; inertia [1e-3, 1e-3, 1e-3]; start velocity [3, 1, 0]; start spin [0, 0, 20]; }
+        body two { mass 0.3; inertia [1e-3, 1e-3, 1e-3]; start at [0.5, 0.05, 0]; start velocity [-1, 0.5, 0]; }
+        contact hit (one circle 0.06 -> two circle 0.04) { rigid; restitution e; }
+        observe { u: m/s = one.velocity; v: m/s = two.velocity; spin: rad/s = one.angular_velocity.z; gap: m = hit.gap;
+            lost: J = integral(dissipated_power) }
+    }";
+    let graphs = graphs(text);
+    for e in [0.0, 0.6, 1.0] {
+        let discs = model(&graphs, "Discs", &[("e", e)]);
+        let start = bg_model::dynamics::Machine::start(&*discs).expect("a start");
+        let finish = run(&*discs, &start, 0.3);
+        let found = outputs(&*discs, finish.t, finish.x.as_slice(), &finish.negative);
+        // They touch where |d + w t| = 0.1.
+        let (d, w) = ([0.5, 0.05], [-4.0, -0.5]);
+        let (a, b, c) = (w[0] * w[0] + w[1] * w[1], d[0] * w[0] + d[1] * w[1], d[0] * d[0] + d[1] * d[1] - 0.01_f64);
+        let t = (-b - (b * b - a * c).sqrt()) / a;
+        let n = [0, 1].map(|k| (d[k] + w[k] * t) / 0.1);
+        let speed = w[0] * n[0] + w[1] * n[1];
+        let impulse = -(1.0 + e) * speed / (1.0 / 0.7 + 1.0 / 0.3);
+        let expected = [
+            3.0 - impulse * n[0] / 0.7,
+            1.0 - impulse * n[1] / 0.7,
+            -1.0 + impulse * n[0] / 0.3,
+            0.5 + impulse * n[1] / 0.3,
+        ];
+        for (k, expected) in [0, 1, 3, 4].into_iter().zip(expected) {
+            assert!((found[k] - expected).abs() < 1e-10, "{e}: {found:?} {expected}");
+        }
+        assert!((found[6] - 20.0).abs() < 1e-12 && found[7] > -1e-12, "{found:?}");
+        let lost = 0.5 * (1.0 - e * e) * speed * speed / (1.0 / 0.7 + 1.0 / 0.3);
+        assert!((found[8] - lost).abs() < 1e-10, "{e}: {found:?} {lost}");
+    }
+}
+
+#[test]
+fn what_rests_on_a_rigid_shape_slides_along_it() {
+    // In a hole it swings as a pendulum of the play's length, released at 60 degrees.
+    let text = "graph Bowl {
+        gravity [0, -9.81, 0]; ground { point O = [0, 0, 0]; }
+        body disc { mass 0.4; inertia [1e-3, 1e-3, 1e-3]; start at [0.2 * sin(60 deg), -0.2 * cos(60 deg), 0]; }
+        contact bowl (ground.O hole 0.25 -> disc circle 0.05) { rigid; restitution 0; }
+        observe { angle: rad = atan2(disc.position.x, -disc.position.y); pressed: N = bowl.pressed; gap: m = bowl.gap }
+    }";
+    struct Pendulum;
+    impl Dynamics for Pendulum {
+        fn states(&self) -> usize {
+            2
+        }
+        fn switches(&self) -> usize {
+            0
+        }
+        fn rate(&self, _: f64, x: &[f64], _: &[bool], dx: &mut [f64]) {
+            dx.copy_from_slice(&[x[1], -9.81 / 0.2 * x[0].sin()]);
+        }
+    }
+    for (found, t) in after(text, &[0.1, 0.7]).iter().zip([0.1, 0.7]) {
+        let x = by_hand(&Pendulum, &[PI / 3.0, 0.0], t);
+        assert!((found[0] - x[0]).abs() < 1e-8, "{t}: {found:?} {x:?}");
+        assert!((found[1] - 0.4 * (9.81 * x[0].cos() + 0.2 * x[1] * x[1])).abs() < 1e-6, "{t}: {found:?} {x:?}");
+    }
+    // From a wall it falls off its end, with the speed of its slide.
+    let text = "graph Slide {
+        gravity [0, -9.81, 0]; ground { point wall = [0, 0, 0] turned rotation_z(-0.3); }
+        body disc { mass 0.4; inertia [1e-3, 1e-3, 1e-3]; start at [0.05 * sin(0.3) + 0.1 * cos(0.3), 0.05 * cos(0.3) - 0.1 * sin(0.3), 0]; }
+        contact wall (ground.wall segment x 0.5 -> disc circle 0.05) { rigid; restitution 0; }
+        observe { way: m = dot([cos(0.3), -sin(0.3), 0], disc.position); pressed: N = wall.pressed }
+    }";
+    for (found, t) in after(text, &[0.2, 0.5]).iter().zip([0.2_f64, 0.5]) {
+        assert!((found[0] - 0.1 - 0.5 * 9.81 * 0.3_f64.sin() * t * t).abs() < 1e-9, "{found:?}");
+        assert!((found[1] - 0.4 * 9.81 * 0.3_f64.cos()).abs() < 1e-7, "{found:?}");
+    }
+    let off = after(text, &[0.8]).remove(0);
+    assert!(off[0] > 0.5 && off[1] == 0.0, "{off:?}");
+}
+
 /// Mistakes of beginners with shapes, play and friction: what is wrong, and the statement with it.
-const MISTAKES: [(&str, &str); 25] = [
+const MISTAKES: [(&str, &str); 30] = [
     ("segment: no length", "contact c (ground segment x -> ball circle 0.1) { stiffness 1e5; }"),
     ("segment: no axis", "contact c (ground segment 0.3 -> ball circle 0.1) { stiffness 1e5; }"),
     ("segment: along z", "contact c (ground segment z 0.3 -> ball circle 0.1) { stiffness 1e5; }"),
@@ -410,6 +489,14 @@ const MISTAKES: [(&str, &str); 25] = [
     (
         "friction in space: a creep of 0",
         "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; creep 0; }",
+    ),
+    ("rigid: no restitution", "contact c (ground line x -> ball circle 0.1) { rigid; }"),
+    ("rigid: a stiffness", "contact c (ground line x -> ball circle 0.1) { rigid; stiffness 1e5; restitution 0; }"),
+    ("rigid: a restitution of 2", "contact c (ground line x -> ball circle 0.1) { rigid; restitution 2; }"),
+    ("rigid: twice", "contact c (ground line x -> ball circle 0.1) { rigid; rigid; restitution 0; }"),
+    (
+        "rigid: friction by its force",
+        "contact c (ground line x -> ball circle 0.1) { rigid; restitution 0; } friction f on c { coulomb 0.2; }",
     ),
 ];
 

@@ -860,6 +860,8 @@ pub struct ShapeContact {
     pub shapes: [Touching; 2],
     /// How they push.
     pub law: PressLaw,
+    /// `rigid;`: they do not give way, and part at once with the `restitution`.
+    pub rigid: bool,
 }
 
 /// How what touches pushes.

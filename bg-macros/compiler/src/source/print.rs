@@ -505,6 +505,7 @@ impl Display for ShapeContact {
         for (clause, value) in self.law.clone().clauses_mut() {
             setting(&mut entries, clause, value.as_ref());
         }
+        entries.extend(self.rigid.then(|| "rigid;".into()));
         let Self { name, ends: Ends { from, to }, shapes: [first, second], .. } = self;
         write!(f, "contact {name} ({from}{first} -> {to}{second})")?;
         settings(f, &entries)

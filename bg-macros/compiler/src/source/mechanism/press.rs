@@ -11,6 +11,8 @@
 //!   only. Here x is the root above 0 of ln((1 + x) / (1 - e x)) = x (1 + e), with which two bodies alone part with e
 //!   times u whatever their masses are: the integral of v / (1 + x v / u) dv from u to -e u, which the depth gives,
 //!   vanishes.
+//!
+//! What is rigid has a residual sink that acts one way only, as a stop with a restitution.
 
 use super::{Expansion, MechanismFault};
 use crate::source::ast::{Expression, Name, PressLaw};
@@ -36,6 +38,42 @@ impl Expansion<'_> {
         self.press_clause((word, name), ("damping", "N*s/m"), law.damping.as_ref(), Allowed::NotNegative);
         self.press_options(word, name, law);
         law.stiffness.is_some()
+    }
+
+    /// Binds the clauses of what does not give way; false where one is missing or cannot be there.
+    pub(super) fn rigid_clauses(&mut self, word: &'static str, name: &Name, law: &PressLaw) -> bool {
+        let text = &name.text;
+        let faults = self.faults.len();
+        for (clause, value) in [
+            ("stiffness", &law.stiffness),
+            ("exponent", &law.exponent),
+            ("damping", &law.damping),
+            ("dissipation", &law.dissipation),
+        ] {
+            let Some(value) = value else { continue };
+            let why = "what is `rigid` does not give way";
+            self.fault(value.span, &MechanismFault::SuperfluousClause { word, name: text.clone(), clause, why });
+        }
+        if law.restitution.is_none() {
+            let (clause, why) = ("restitution", "what is rigid parts with some of its speed, or with 0 of it");
+            self.fault(name.span, &MechanismFault::MissingClause { word, name: text.clone(), clause, why });
+        }
+        self.press_clause((word, name), ("restitution", "1"), law.restitution.as_ref(), Allowed::Fraction);
+        self.press_clause((word, name), ("rest", "m/s"), law.rest.as_ref(), Allowed::NotNegative);
+        self.faults.len() == faults
+    }
+
+    /// The residual sink of what does not give way, on the junction `NAME.approach`, whose flow is the rate of `gap`.
+    pub(super) fn rigid_press(&mut self, name: &Name, law: &PressLaw, gap: &str) {
+        let (span, name) = (name.span, &name.text);
+        let rest = if law.rest.is_some() { format!("rest below {name}.rest") } else { String::new() };
+        self.text(
+            span,
+            &format!(
+                "rSe {name}.stop = 0 at -{gap} restitution {name}.restitution {rest};
+                 {name}.stop -> {name}.approach; let {name}.pressed: N = {name}.stop.effort;"
+            ),
+        );
     }
 
     /// Binds the clauses of a law but for its stiffness and its damping.

@@ -64,7 +64,8 @@ impl Expansion<'_> {
         // The first shape is the one whose axes the normal is found in.
         let swapped = first.shape.rank() > second.shape.rank();
         let (first, second) = if swapped { (second, first) } else { (first, second) };
-        if !self.press_clauses("contact", &contact.name, &contact.law) {
+        let clauses = if contact.rigid { Self::rigid_clauses } else { Self::press_clauses };
+        if !clauses(self, "contact", &contact.name, &contact.law) {
             return;
         }
         self.text(span, &format!("let {name}.between: m = {} - {};", second.end.position, first.end.position));
@@ -91,7 +92,12 @@ impl Expansion<'_> {
                  {name}.push.slip -> {name}.axis -> {name}.approach; let {name}.speed: m/s = {name}.approach.flow;"
             ),
         );
-        self.press(&contact.name, &contact.law, (name, &format!("{name}.gap")));
+        let gap = format!("{name}.gap");
+        if contact.rigid {
+            self.rigid_press(&contact.name, &contact.law, &gap);
+        } else {
+            self.press(&contact.name, &contact.law, (name, &gap));
+        }
         let slides = self.is_braked(&format!("{name}.slide"));
         let mut force = format!("{name}.push.force");
         if slides {

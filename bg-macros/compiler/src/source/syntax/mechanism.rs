@@ -51,7 +51,7 @@ const CONTACT: Place = Place { name: "a contact", words: &["x", "y", "z"], list:
 /// The block of a contact of shapes.
 const SHAPE_CONTACT: Place = Place {
     name: "a contact of shapes",
-    words: &["stiffness", "exponent", "damping", "dissipation", "restitution", "rest below"],
+    words: &["stiffness", "exponent", "damping", "dissipation", "restitution", "rest below", "rigid"],
     list: false,
 };
 
@@ -195,10 +195,7 @@ impl Cursor<'_> {
                 return entry.inertial_frame(&mut inertial);
             }
             if entry.word() == Some("rigid") {
-                let span = entry.advance();
-                entry.fill(&mut rigid, (), "rigid", span);
-                entry.end_statement("");
-                return Ok(());
+                return entry.rigid_clause(&mut rigid);
             }
             let mut slots = vec![
                 ("stiffness", &mut joint.stiffness),
@@ -214,6 +211,14 @@ impl Cursor<'_> {
         joint.inertial = inertial.is_some();
         joint.rigid = rigid.is_some();
         Ok(joint)
+    }
+
+    /// `rigid;`
+    fn rigid_clause(&mut self, slot: &mut Option<()>) -> Parsed<()> {
+        let span = self.advance();
+        self.fill(slot, (), "rigid", span);
+        self.end_statement("");
+        Ok(())
     }
 
     /// `frame inertial;`
@@ -413,8 +418,13 @@ impl Cursor<'_> {
 
     /// `{ stiffness E; ... }` of a contact of shapes.
     fn shape_contact(&mut self, name: Name, ends: Ends, shapes: [Touching; 2]) -> ShapeContact {
-        let mut contact = ShapeContact { name, ends, shapes, law: PressLaw::default() };
-        self.block_or_semicolon(&SHAPE_CONTACT, |entry| entry.setting(&mut contact.law.clauses_mut()));
+        let mut contact = ShapeContact { name, ends, shapes, law: PressLaw::default(), rigid: false };
+        let mut rigid = None;
+        self.block_or_semicolon(&SHAPE_CONTACT, |entry| match entry.word() {
+            Some("rigid") => entry.rigid_clause(&mut rigid),
+            _ => entry.setting(&mut contact.law.clauses_mut()),
+        });
+        contact.rigid = rigid.is_some();
         contact
     }
 
