@@ -278,7 +278,7 @@ const MORE: [(&str, &str); 65] = [
         "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground arc 0.3 from 0 to 1 -> ball) { stiffness 1e5; }",
     ),
     (
-        "BG0704",
+        "BG0701",
         "body ball { sphere radius 0.1; density 1; }\n\
          contact c (ground arc 0.3 from 1 to ▸0.5 -> ball circle 0.1) { stiffness 1e5; }",
     ),

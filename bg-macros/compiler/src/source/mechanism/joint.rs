@@ -192,7 +192,7 @@ impl Expansion<'_> {
         let Some(clearance) = &joint.clearance else {
             let length = joint.length.as_ref().map(|value| ("length", value));
             let mut play = joint.play.clone();
-            let clauses = play.play_mut().map(|(clause, value)| Some((clause, &*value.as_ref()?)));
+            let clauses = play.play_mut().map(|(clause, value)| Some((clause, value.as_ref()?)));
             for (clause, value) in length.into_iter().chain(clauses.into_iter().flatten()) {
                 self.fault(value.span, &fault(clause, "it has no `clearance`"));
             }
