@@ -108,8 +108,8 @@ mod model;
 mod solve;
 
 pub use model::{
-    assembly, capability, description, drawing, dynamics, holding, input, iteration, linear, mechanism, parameters,
-    requirement, scalar, series, standing, start, system,
+    assembly, capability, clock, description, drawing, dynamics, holding, input, iteration, linear, mechanism,
+    parameters, requirement, scalar, series, standing, start, system,
 };
 #[cfg(feature = "std")]
 pub use solve::{extended, run, sensitivity};

@@ -14,7 +14,7 @@ use bg_compiler::source::syntax::files::{self, Gathered, Opened};
 const MARK: char = '▸';
 
 /// The statements of the graph, one line each; they begin in line 2.
-const SYNTAX: [(&str, &str); 23] = [
+const SYNTAX: [(&str, &str); 24] = [
     ("BG0101", "▸resitor R = 2;"),
     ("BG0102", "supply ▸=> shaft;"),
     ("BG0103", "I rotor = ▸inertia"),
@@ -36,6 +36,7 @@ const SYNTAX: [(&str, &str); 23] = [
     ("BG0119", "1 shaft[▸2];"),
     ("BG0120", "▸/// A coil.\nI L = coil;"),
     ("BG0121", "▸#[cfg(test)] I L = coil;"),
+    ("BG0124", "▸sample a: 1 = 2;"),
     ("BG0122", ""),
     ("BG0123", "▸use \"shaft.bond\";"),
 ];
@@ -101,7 +102,7 @@ const MECHANISM: [(&str, &str); 18] = [
     ),
 ];
 
-const GRAPH: [(&str, &str); 41] = [
+const GRAPH: [(&str, &str); 45] = [
     ("BG0301", "param mass: ▸kgs = 1;\nSe f = 1; 1 j: translation; I m = 2; f -> j -> m;"),
     ("BG0302", "param m: kg = 1;\nSe f = 1; 1 j: translation; I ▸m = 2; f -> j -> m;"),
     ("BG0303", "param mass: kg = 1;\nSe f = 1; 1 j: translation; I m = ▸mas; f -> j -> m;"),
@@ -148,6 +149,10 @@ const GRAPH: [(&str, &str); 41] = [
         "table ▸c: m, V -> N = [[0, 1], [0, 1, 2], [1, 2, 3]], periodic;\n\
          1 j: translation; I m = 2; MSe f = c(k.q, 1); C k(q) = 2 * q; f -> j -> m; j -> k;",
     ),
+    ("BG0342", "every ▸1 ms { } 1 j: translation; I m = 2; Se f = 1; f -> j -> m;"),
+    ("BG0343", "every 1 ms { sample a: 1 = 2; } 1 j: translation; I m = 2; MSe f = ▸a.last; f -> j -> m;"),
+    ("BG0344", "every 1 ms { sample ▸a: 1 = a + 1; } 1 j: translation; I m = 2; MSe f = a; f -> j -> m;"),
+    ("BG0345", "1 j: translation; I m = 2; MSe f = ▸delay(j.flow, 2 ms) * 1 N*s/m; f -> j -> m;"),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
 ];
@@ -216,7 +221,19 @@ const VALUES: [(&str, &str); 4] = [
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 65] = [
+const MORE: [(&str, &str); 71] = [
+    ("BG0102", "every ▸{ sample a: 1 = 2; }"),
+    ("BG0101", "every 1 ms { ▸let a = 2; }"),
+    ("BG0113", "every 1 ms { sample ▸a = 2; }"),
+    (
+        "BG0345",
+        "every 2 ms { sample a: m/s = delay(j.flow, ▸5 ms); } 1 j: translation; I m = 2; MSe f = 1 N*s/m * a; f -> j -> m;",
+    ),
+    ("BG0316", "every ▸1 m { sample a: 1 = 2; } 1 j: translation; I m = 2; MSe f = 1 N * a; f -> j -> m;"),
+    (
+        "BG0323",
+        "every 1 s ▸* j.flow / (1 m/s) { sample a: 1 = 2; } 1 j: translation; I m = 2; MSe f = 1 N * a; f -> j -> m;",
+    ),
     ("BG0339", "table ▸c: m -> N = [[0, 1]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;"),
     (
         "BG0339",

@@ -31,6 +31,7 @@ pub struct Blueprint {
     pub(crate) second: Range<usize>,
     pub(crate) first_branches: Vec<bool>,
     pub(crate) memories: Vec<usize>,
+    pub(crate) clocks: Vec<usize>,
     pub(crate) loops: Vec<Loop>,
     pub(crate) elimination: Deferred<Elimination>,
 }
@@ -76,6 +77,7 @@ pub struct Codes {
     pub gap_sizes: Alone,
     pub start_state: Alone,
     pub sides: Option<Alone>,
+    pub clocks: Option<Alone>,
     pub required: Option<Alone>,
     pub required_at_start: Option<Alone>,
     pub not_finite: Alone,
@@ -140,6 +142,7 @@ impl Blueprint {
             second: tables.second,
             first_branches: tables.first_branches,
             memories: tables.memories,
+            clocks: tables.clocks,
             loops: tables.loops,
         }
     }
@@ -235,7 +238,7 @@ fn codes(programs: Programs, rows: &Rows, states: usize, damped: Vec<(usize, usi
     let running = Arc::new(running);
     let Running { constants, rate, guards, loops, reactions, outputs, project, settle, stored_energy, powers } =
         &*running;
-    let Starting { guesses, gaps, gap_sizes, start_state, sides } = &starting;
+    let Starting { guesses, gaps, gap_sizes, start_state, sides, clocks } = &starting;
     // The unknowns of iterations come after the rates: only series have a use for them.
     let rates = Routine { results: rate.results[..states].to_vec(), ..rate.clone() };
     Codes {
@@ -259,6 +262,7 @@ fn codes(programs: Programs, rows: &Rows, states: usize, damped: Vec<(usize, usi
         gap_sizes: alone(gap_sizes),
         start_state: alone(start_state),
         sides: some(sides),
+        clocks: some(clocks),
         required: some(&required[0]),
         required_at_start: some(&required[1]),
         not_finite: alone(&not_finite),

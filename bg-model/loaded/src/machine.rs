@@ -9,6 +9,7 @@ use std::rc::Rc;
 
 use bg_model::assembly::AssemblyError;
 use bg_model::capability::{Operations, SeriesSize};
+use bg_model::clock::Clock;
 use bg_model::description::{Description, StateInfo};
 use bg_model::drawing;
 use bg_model::dynamics::{Dynamics, Machine, Rates, Swept};
@@ -77,6 +78,14 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
 
     fn memories(&self) -> Vec<usize> {
         self.blueprint.memories.clone()
+    }
+
+    fn clocks(&self) -> Vec<Clock<S>> {
+        let Some(program) = &self.programs().clocks else { return Vec::new() };
+        let mut times = vec![S::from_f64(0.0); 2 * self.blueprint.clocks.len()];
+        of_parameters(program, &self.values, &[], Some(&self.decided), &mut times);
+        let clock = |(&switch, times): (&usize, &[S])| Clock { switch, period: times[0], first: times[1] };
+        self.blueprint.clocks.iter().zip(times.chunks_exact(2)).map(clock).collect()
     }
 
     fn first_branches(&self) -> Vec<bool> {

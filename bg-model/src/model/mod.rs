@@ -2,6 +2,7 @@
 
 pub mod assembly;
 pub mod capability;
+pub mod clock;
 pub mod description;
 pub mod drawing;
 pub mod dynamics;

@@ -9,6 +9,7 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::model::assembly::{AssemblyError, Closed, Gap, close};
+use crate::model::clock;
 use crate::model::dynamics::{Dynamics, branches};
 use crate::model::holding::Redundancy;
 use crate::model::nearest::lifted;
@@ -119,11 +120,21 @@ fn pose<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Vec
 
 /// Writes the start state of a model. The kinetic energy that impulses have taken to make it fit, J. What no unknown
 /// closes of the gaps of rigid joints, which is little, a projection does: a run would take it for an error of its
-/// steps. Allocates where there are joints.
+/// steps. Samples whose first instant is 0 are computed there. Allocates where there are joints or clocks.
 ///
 /// # Errors
 /// The pose does not close, or the velocities do not fit.
 pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut [S]) -> Result<S, AssemblyError> {
+    let lost = assembled(of, system, x)?;
+    let clocks = system.clocks();
+    if clock::is_due(&clocks, 0.0) {
+        clock::compute_due(system, &clocks, 0.0, &branches(system, 0.0, x), x);
+    }
+    Ok(lost)
+}
+
+/// The same before samples are computed.
+fn assembled<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut [S]) -> Result<S, AssemblyError> {
     let (unknowns, is_exact) = unknowns(of)?;
     if system.held().is_none() {
         of.in_scalars(StartRoutine::State, &unknowns, x);

@@ -58,11 +58,21 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         [false; G]
     }
 
-    /// The states that [`System::project`] sets to what they follow, by which it moves them far: what memories keep.
+    /// The states that [`System::project`] sets to what they follow, by which it moves them far: what memories keep
+    /// and samples hold.
     /// None by default.
     fn memories(&self) -> &'static [usize] {
         &[]
     }
+
+    /// The switches of clocks: their guards are 1, and [`System::project`] computes samples in their negative branches,
+    /// in which they are at the instants of [`System::instants`] only. None by default.
+    fn clocks(&self) -> &'static [usize] {
+        &[]
+    }
+
+    /// Writes of each clock the time from one instant to the next, s, above 0, and its first instant, s.
+    fn instants(&self, _instants: &mut [S]) {}
 
     /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal
     /// orientations, closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before

@@ -3,14 +3,15 @@
 //! In: a system, its state, the step. Out: the state one step later. Method: the classical Runge-Kutta method of order
 //! 4, as [`Rk4`](crate::integrator::Rk4), in any scalar. Branches change where a step ends, not where a guard passes
 //! through zero, and no step is shortened: an event is late by up to a step, which costs accuracy, and the cost of a
-//! step stays the same.
+//! step stays the same. So are the samples of clocks, unless the step divides their times.
 
 use nalgebra::SVector;
 use thiserror::Error;
 
+use crate::model::clock::{self, Clock};
 use crate::model::description::{Description, OperationCount};
 use crate::model::scalar::Scalar;
-use crate::model::system::{System, branches_by_sign};
+use crate::model::system::{System, branches_by_sign, switches};
 use crate::solve::integrator::rk4;
 
 /// A run that moves on by one step at a time.
@@ -131,8 +132,10 @@ impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G
         if let Some(state) = x.iter().position(|value| !value.to_f64().is_finite()) {
             return Err(NotFinite { state, t: self.time() });
         }
+        let before = self.time();
         self.steps += 1;
         system.project(S::from_f64(self.time()), &negative, &mut x);
+        self.compute_samples(system, before, &mut x);
         self.negative = self.branches(system, &x);
         self.x = x;
         Ok(())
@@ -154,6 +157,38 @@ impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G
     #[must_use]
     pub const fn negative(&self) -> &[bool; G] {
         &self.negative
+    }
+
+    /// Computes the samples of clocks that have had an instant after `before` (s), at the end of the step.
+    fn compute_samples(&self, system: &impl System<S, N, G>, before: f64, x: &mut SVector<S, N>) {
+        let clocks = system.clocks();
+        if clocks.is_empty() {
+            return;
+        }
+        let zero = S::from_f64(0.0);
+        let mut times = [[zero; 2]; G];
+        system.instants(times[..clocks.len()].as_flattened_mut());
+        let (now, mut negative) = (self.time(), self.negative);
+        let t = S::from_f64(now);
+        let mut room = [SVector::<S, G>::repeat(zero); 2];
+        system.guards(t, x, &negative, &mut room[0]);
+        for (&switch, [period, first]) in clocks.iter().zip(times) {
+            negative[switch] = Clock { switch, period, first }.next(before) <= now + clock::rounding(now);
+        }
+        let [before, value] = room.each_mut().map(|guards| guards.as_mut_slice());
+        clock::decide(
+            &mut negative,
+            |k| clocks.contains(&k),
+            [before, value],
+            |negative, value| {
+                let mut guards = SVector::repeat(zero);
+                system.guards(t, x, switches(negative), &mut guards);
+                value.copy_from_slice(guards.as_slice());
+            },
+        );
+        let mut projected = *x;
+        system.project(t, &negative, &mut projected);
+        system.memories().iter().for_each(|&held| x[held] = projected[held]);
     }
 
     /// The branches that the signs of the guards call for at state `x`, where those of the last step were so.

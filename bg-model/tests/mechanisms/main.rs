@@ -16,6 +16,7 @@ mod orifice;
 #[path = "../problems/mod.rs"]
 mod problems;
 mod redundant;
+mod samples;
 mod shapes;
 mod space;
 mod spatial_slider_crank;

@@ -12,7 +12,7 @@ use bg_model::simulation::Samples;
 
 use super::{
     Ball, BallParameters, Belt, BeltParameters, Block, BlockParameters, Crank, CrankParameters, Dropped,
-    DroppedParameters, Lifted, LiftedParameters, Pendulum, PendulumParameters,
+    DroppedParameters, Lifted, LiftedParameters, Pendulum, PendulumParameters, Sampled, SampledParameters,
 };
 
 /// All parameters and the start of each state.
@@ -54,6 +54,16 @@ fn deviation<Me: Mechanism>(model: &Me, t: f64) -> (f64, u64) {
         worst = worst.max(difference(model, &found, &of_output));
     }
     (worst, expected.trajectory.statistics.events)
+}
+
+/// 0.9 s is an instant of one clock.
+#[test]
+fn samples_whose_instants_move() {
+    let model = Sampled::new(SampledParameters::default()).unwrap();
+    for t in [0.9, 0.95] {
+        let (error, _) = deviation(&model, t);
+        assert!(error < 1e-9, "{t} {error:e}");
+    }
 }
 
 #[test]

@@ -74,6 +74,21 @@ bond_graph! {
         scenes only;
         scene Dropped { expect planar; }
     }
+    /// A wheel whose speed a computer keeps, with a limit; every so often it looks at the angle, too.
+    graph Sampled {
+        param period: s = 0.02, above 0; param delay: s = 0.003, at least 0; param wanted: rad/s = 10; param gain: N*m*s/rad = 3;
+        param integral: N*m/rad = 9; param most: N*m = 12, above 0; param inertia: kg*m^2 = 0.5, above 0; param began: rad/s = 1;
+        every period offset delay {
+            sample error: rad/s = wanted - shaft.flow - correction;
+            sample wish: N*m = gain * error + integral * sum.last;
+            sample sum: rad = if abs(wish) < most { sum.last + period * error } else { sum.last };
+            sample torque: N*m = if wish > most { most } else if wish < -most { -most } else { wish };
+        }
+        every 5 * period { sample correction: rad/s = 0.1 * shaft.displacement / (1 s); }
+        MSe motor = torque; 1 shaft: rotation; I wheel = inertia start inertia * began; R rub(w) = 0.4 * w * abs(w);
+        motor -> shaft -> wheel; shaft -> rub;
+        observe { speed: rad/s = shaft.flow; angle: rad = shaft.displacement; torque: N*m = torque; work: J = integral(motor.power) }
+    }
     /// A mass on a spring.
     graph Oscillator {
         param mass: kg = 2, above 0; param stiffness: N/m = 50, above 0; param start: m = 0.1;
@@ -146,6 +161,12 @@ fn a_law_with_two_branches() {
 fn a_contact_by_restitution_keeps_a_speed_of_an_instant_that_moves() {
     let (error, events) = deviation(&Dropped::new(DroppedParameters::default()).unwrap(), 0.25, Integrator::Dop853);
     assert!(error < 1e-8 && events >= 2, "{error:e} {events}");
+}
+
+#[test]
+fn samples_whose_instants_move() {
+    let (error, _) = deviation(&Sampled::new(SampledParameters::default()).unwrap(), 0.95, Integrator::Dop853);
+    assert!(error < 1e-9, "{error:e}");
 }
 
 #[test]

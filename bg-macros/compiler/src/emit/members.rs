@@ -53,6 +53,10 @@ const EFFORT: Member = ("effort", OfBond, "Effort of its bond, sign along the ha
 const FLOW: Member = ("flow", OfBond, "Flow of its bond, sign along the half arrow.");
 const POWER: Member = ("power", Scalar, "Power into it. Unit: W.");
 
+/// Of a sample, within its clock's block.
+pub(super) const SAMPLE: [Member; 1] =
+    [("last", Scalar, "What was held before the instant; only within a block `every`. Unit: the sample's own.")];
+
 /// What there is after the item's name and a dot.
 pub(super) fn of(item: &Item) -> Vec<Member> {
     match item {

@@ -217,6 +217,7 @@ fn kind(item: &Item) -> Option<Kind> {
         Item::Parameter(_) => Kind::Parameter,
         Item::Input(_) => Kind::Input,
         Item::Let(_) | Item::Table(_) | Item::State(_) | Item::Memory(_) | Item::Track(_) => Kind::Value,
+        Item::Every(_) => Kind::Thing("Sample".to_owned(), members::SAMPLE.to_vec()),
         Item::Port(Port::Alias(..)) => Kind::Port,
         Item::Port(Port::Junction(junction)) => {
             let item = Item::Junction(junction.clone());

@@ -54,6 +54,11 @@ pub enum GraphFault {
     TableRow { name: String, found: usize, expected: usize },
     TableOfTwo { name: String, word: &'static str },
     TableWithoutArgument { name: String },
+    EveryEmpty,
+    LastOutside { sample: String },
+    SampleCycle { name: String },
+    DelayOutside,
+    DelayTime { clock: String, most: f64 },
 }
 
 use GraphFault as F;
@@ -107,6 +112,10 @@ impl Explain for GraphFault {
             | F::TableRow { .. } => "BG0339",
             F::TableOfTwo { .. } => "BG0341",
             F::TableWithoutArgument { .. } => "BG0340",
+            F::EveryEmpty => "BG0342",
+            F::LastOutside { .. } => "BG0343",
+            F::SampleCycle { .. } => "BG0344",
+            F::DelayOutside | F::DelayTime { .. } => "BG0345",
         }
     }
 
@@ -183,6 +192,17 @@ impl Explain for GraphFault {
             }
             F::TableOfTwo { name, word } => format!("the table `{name}` of two arguments cannot have a `{word}`"),
             F::TableWithoutArgument { name } => format!("`{name}` is a table, whose value needs an argument"),
+            F::EveryEmpty => "this `every` computes nothing".to_owned(),
+            F::LastOutside { sample } => {
+                format!("`{sample}.last` is what was held before an instant, which only a block `every` knows")
+            }
+            F::SampleCycle { name } => format!("the sample `{name}` depends on its own value at the same instant"),
+            F::DelayOutside => "a `delay` needs the instants of a clock, at which it hands its signal on".to_owned(),
+            F::DelayTime { clock, most } => {
+                format!(
+                    "the time of a `delay` is 1 to {most} times that of its block, `{clock}`, both written as numbers"
+                )
+            }
             F::UnitOrName { unit, symbol } => {
                 format!("`{symbol}` in `{unit}` is a unit, and there is something of this name")
             }
@@ -249,6 +269,13 @@ impl Explain for GraphFault {
                     .to_owned()
             }
             F::TableWithoutArgument { name } => format!("write `{name}(..)` with the argument in the parentheses"),
+            F::EveryEmpty => "write `sample NAME: UNIT = VALUE;` into its braces".to_owned(),
+            F::LastOutside { sample } => format!("write `{sample}`, which is held until the next instant"),
+            F::SampleCycle { name } => format!("write `{name}.last` for its value before the instant"),
+            F::DelayOutside => {
+                "write `every 1 ms { sample NAME: UNIT = delay(SIGNAL, 20 ms); }` and use NAME here".to_owned()
+            }
+            F::DelayTime { .. } => "write a multiple of it, such as `delay(x, 20 ms)` in `every 1 ms`".to_owned(),
             F::UnitOrName { symbol, .. } => {
                 format!("write `({symbol})` if you mean that, or rename it if you mean the unit")
             }

@@ -73,6 +73,8 @@ pub struct BondGraph {
     pub ways: Vec<NodeId>,
     /// Time integrals, each one state: those of the graph's own, then those that outputs ask for.
     pub integrals: Vec<Integral>,
+    /// What computes samples.
+    pub clocks: Vec<Clock>,
     /// What the mechanism looks like.
     pub drawing: Drawing<Term>,
 }
@@ -357,8 +359,19 @@ pub struct Integral {
     pub declared: Option<Dimension>,
     /// Its value at t = 0.
     pub start: Option<Term>,
-    /// The `let` that it becomes after each step, of a memory.
+    /// The `let` that it becomes after each step, of a memory or a sample.
     pub follows: Option<usize>,
+}
+
+/// A clock, which computes samples.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    /// As written, without its samples.
+    pub text: String,
+    /// The `let` of the time between two instants, s.
+    pub period: usize,
+    /// The `let` of the first instant, s.
+    pub first: usize,
 }
 
 impl Turn {

@@ -40,6 +40,9 @@ pub enum TermKind {
     Vector(Vec<Term>),
     /// `if left < right { then } else { otherwise }`, with `left < right` as written.
     If(Comparison, String, Box<[Term; 4]>),
+    /// The first at an instant of this clock, an index into [`BondGraph::clocks`](super::BondGraph::clocks), else the
+    /// second.
+    AtInstant(usize, Box<[Term; 2]>),
     /// The solution of the assembly for this guess.
     Guess(usize),
     /// A time integral since t = 0.
@@ -174,7 +177,7 @@ impl Builtin {
 
     /// All names, for near misses.
     pub fn names() -> impl Iterator<Item = &'static str> {
-        NAMES.iter().map(|(name, ..)| *name).chain(["guess", "integral", "unwrapped"])
+        NAMES.iter().map(|(name, ..)| *name).chain(["guess", "integral", "unwrapped", "delay"])
     }
 
     /// The function's name.
@@ -203,6 +206,7 @@ impl Term {
                 parts.iter().for_each(|part| part.visit(each));
             }
             TermKind::If(_, _, parts) => parts.iter().for_each(|part| part.visit(each)),
+            TermKind::AtInstant(_, parts) => parts.iter().for_each(|part| part.visit(each)),
         }
     }
 
@@ -248,6 +252,7 @@ impl Term {
                 degrees.all(|degree| degree == Some(first)).then_some(first)
             }
             TermKind::If(_, _, parts) => parts.iter().all(|part| part.degree() == Some(0)).then_some(0),
+            TermKind::AtInstant(_, parts) => parts.iter().all(|part| part.degree() == Some(0)).then_some(0),
         }
     }
 }

@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use proc_macro2::Span;
 
 use super::term::{Builtin, Lookup, Operation, Reference, Term, TermKind};
-use super::{BondGraph, GraphFault, NodeId, NodeKind};
+use super::{BondGraph, GraphFault, Integral, NodeId, NodeKind};
 use crate::fault::{Explain, Fault};
 use bg_units::Unit;
 
@@ -125,10 +125,24 @@ impl<'a> Types<'a> {
         self.of(term, variable, &mut Vec::new())
     }
 
+    /// A state of the graph's own, or of a delay, which is what its signal is.
+    pub fn of_own(&self, index: usize) -> Typed {
+        let Integral { declared, follows, .. } = &self.graph.integrals[index];
+        match (declared, follows) {
+            (Some(declared), _) => (Shape::Scalar, Quantity::Known(*declared)),
+            (None, Some(follows)) => self.of_let(*follows),
+            (None, None) => (Shape::Scalar, Quantity::Unknown),
+        }
+    }
+
     fn of_let(&self, index: usize) -> Typed {
         let known = self.lets.borrow()[index];
         known.unwrap_or_else(|| {
             let definition = &self.graph.lets[index];
+            if let (TermKind::AtInstant(..), Some(unit)) = (&definition.value.kind, definition.declared) {
+                // Its value may depend on what it was before.
+                return (Shape::Scalar, Quantity::Known(unit.dimension));
+            }
             let (found, quantity) = self.silently(&definition.value, None);
             let shape = definition.clause.as_ref().map_or(found, |clause| Shape::of_components(clause.components));
             let typed = (shape, definition.declared.map_or(quantity, |unit| Quantity::Known(unit.dimension)));
@@ -150,9 +164,7 @@ impl<'a> Types<'a> {
                 TrackKind::Orientation => (Shape::Matrix, Quantity::Known(Dimension::NONE)),
             },
             Reference::Turn(_) => known(Dimension::NONE),
-            Reference::Own(index) => {
-                known(self.graph.integrals[index].declared.expect("a state of the graph's own has a unit"))
-            }
+            Reference::Own(index) => self.of_own(index),
             Reference::Flow(node) => self.of_node(node, |_, flow| flow),
             Reference::Effort(node) => self.of_node(node, |effort, _| effort),
             Reference::Displacement(node) => self.of_node(node, |_, flow| flow.times(Dimension::SECOND)),
@@ -219,6 +231,7 @@ impl Checker<'_, '_> {
                 self.alike(term, "compare", left, right);
                 self.alike(term, "choose between", then, otherwise)
             }
+            TermKind::AtInstant(_, parts) => self.check(&parts[0]),
             TermKind::Guess(index) => {
                 let guess = self.types.graph.guesses[*index].clone();
                 self.shaped("guess", &guess, Shape::Scalar)

@@ -119,6 +119,8 @@ pub struct Starting {
     pub start_state: Program<1>,
     /// What the sides of roots have the signs of, where there are any.
     pub sides: Option<Program<1>>,
+    /// Of each clock the time between two instants and the first one, s, where there are any.
+    pub clocks: Option<Program<1>>,
 }
 
 /// Schedules all functions of a model. The pools gain nodes of parameters and numbers.
@@ -249,6 +251,8 @@ fn impacts(equations: &StateEquations) -> Option<Program<1>> {
 fn starting(equations: &mut StateEquations) -> Starting {
     let gaps = roots(&equations.gaps, |gap| gap.value);
     let starts = roots(&equations.states, |state| state.start);
+    let clocks = equations.switches.iter().filter_map(|switch| switch.clock);
+    let clocks: Vec<Id> = clocks.flat_map(|clock| [clock.period, clock.first]).collect();
     let (pool, requirements) = (&mut equations.pool, &mut equations.requirements);
     Starting {
         guesses: alone(pool, "guesses", &equations.guesses),
@@ -256,6 +260,7 @@ fn starting(equations: &mut StateEquations) -> Starting {
         gap_sizes: alone(&mut requirements.pool, "gap_sizes", &requirements.extents),
         start_state: alone(pool, "start_state", &starts),
         sides: (!equations.sides.is_empty()).then(|| alone(pool, "sides", &equations.sides)),
+        clocks: (!clocks.is_empty()).then(|| alone(pool, "clocks", &clocks)),
     }
 }
 
@@ -313,7 +318,10 @@ impl SecondOrderPrograms {
 impl Starting {
     /// All of them.
     pub fn programs(&self) -> impl Iterator<Item = &Program<1>> {
-        [&self.guesses, &self.gaps, &self.gap_sizes, &self.start_state].into_iter().chain(&self.sides)
+        [&self.guesses, &self.gaps, &self.gap_sizes, &self.start_state]
+            .into_iter()
+            .chain(&self.sides)
+            .chain(&self.clocks)
     }
 }
 

@@ -97,6 +97,8 @@ pub enum Item {
     State(State),
     /// `memory NAME: UNIT = E while E < E start E;`
     Memory(Memory),
+    /// `every E offset E { sample NAME: UNIT = E start E; .. }`
+    Every(Every),
     /// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`, with two arguments `table NAME: UNIT, UNIT -> ..`
     Table(Table),
     /// `1 NAME;`, `0 NAME[3]: translation;`
@@ -249,6 +251,50 @@ impl Memory {
     }
 }
 
+/// Values that are computed at the instants of a clock and held in between: a digital controller's.
+#[derive(Clone, Debug)]
+pub struct Every {
+    /// The time from one instant to the next.
+    pub period: Expression,
+    /// The first instant; 0 when left out.
+    pub offset: Option<Expression>,
+    /// What is computed.
+    pub samples: Vec<Sample>,
+}
+
+/// A value of a clock.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// Its name.
+    pub name: Name,
+    /// Its unit.
+    pub unit: Unit,
+    /// What it becomes at an instant.
+    pub value: Expression,
+    /// What is held before the first instant; 0 when left out.
+    pub start: Option<Expression>,
+}
+
+impl Every {
+    /// What says when, as written.
+    #[must_use]
+    pub fn times(&self) -> String {
+        let offset = self.offset.as_ref().map_or_else(String::new, |offset| format!(" offset {offset}"));
+        format!("every {}{offset}", self.period)
+    }
+}
+
+impl Sample {
+    /// The name of the value that is held before an instant.
+    #[must_use]
+    pub fn last(name: &Name) -> Name {
+        Name::new(format!("{}.{}", name.text, Self::LAST), name.span)
+    }
+
+    /// What follows the name of a sample for the value before an instant.
+    pub const LAST: &'static str = "last";
+}
+
 /// A function of one variable or two that is given by points.
 #[derive(Clone, Debug)]
 pub struct Table {
@@ -305,6 +351,12 @@ pub struct Unit {
 }
 
 impl Unit {
+    /// The second, at this place.
+    #[must_use]
+    pub fn second(span: Span) -> Self {
+        Self { factors: vec![(Name::new("s", span), 1)], span }
+    }
+
     /// The unit that this stands for; none where a symbol is not known.
     #[must_use]
     pub fn meaning(&self) -> Option<bg_units::Unit> {

@@ -7,9 +7,9 @@ use std::fmt::{Display, Formatter, Result};
 
 use crate::source::ast::{
     Axis, AxisLaw, Baumgarte, Between, Beyond, Body, Bound, Choice, Close, Contact, Direction, Drive, Element,
-    ElementKind, Ends, Expectation, Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input, Item,
-    Joint, JointKind, Junction, JunctionKind, LawVariable, Let, Memory, Name, Observation, Operation, Orifice,
-    Parameter, Part, Point, Rigid, Role, Scene, Shape, ShapeContact, Solid, Source, Spring, State, Stop, Table,
+    ElementKind, Ends, Every, Expectation, Expression, ExpressionKind, Friction, Graph, Gravity, Ground, Held, Input,
+    Item, Joint, JointKind, Junction, JunctionKind, LawVariable, Let, Memory, Name, Observation, Operation, Orifice,
+    Parameter, Part, Point, Rigid, Role, Sample, Scene, Shape, ShapeContact, Solid, Source, Spring, State, Stop, Table,
     Touching, Track, Tune, Unit, Watch,
 };
 use crate::source::words::{
@@ -123,6 +123,7 @@ impl Display for Item {
             Self::Table(table) => table.fmt(f),
             Self::State(state) => state.fmt(f),
             Self::Memory(memory) => memory.fmt(f),
+            Self::Every(every) => every.fmt(f),
             Self::Input(input) => input.fmt(f),
             Self::Let(binding) => binding.fmt(f),
             Self::Junction(junction) => junction.fmt(f),
@@ -580,6 +581,16 @@ impl Display for Memory {
         let Self { name, unit, following: Choice { comparison, left, right, then, .. }, start } = self;
         let sign = word_of(&COMPARISONS, comparison);
         write!(f, "memory {name}: {unit} = {then} while {left} {sign} {right}{};", clause("start", start.as_ref()))
+    }
+}
+
+impl Display for Every {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let sample = |Sample { name, unit, value, start }: &Sample| {
+            format!("sample {name}: {unit} = {value}{};", clause("start", start.as_ref()))
+        };
+        write!(f, "{} ", self.times())?;
+        block(f, &self.samples.iter().map(sample).collect::<Vec<_>>())
     }
 }
 

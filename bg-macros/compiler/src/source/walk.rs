@@ -42,6 +42,13 @@ pub(crate) fn walk(item: &mut Item, each: &mut dyn FnMut(Met)) {
             let Choice { left, right, then, otherwise, .. } = &mut memory.following;
             values([then, left, right, otherwise].into_iter().chain(&mut memory.start), each);
         }
+        Item::Every(every) => {
+            values(std::iter::once(&mut every.period).chain(&mut every.offset), each);
+            for sample in &mut every.samples {
+                each(Met::Declared(&mut sample.name));
+                values(std::iter::once(&mut sample.value).chain(&mut sample.start), each);
+            }
+        }
         Item::Table(table) => {
             each(Met::Declared(&mut table.name));
             values([&mut table.points], each);

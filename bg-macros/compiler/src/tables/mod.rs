@@ -51,8 +51,10 @@ pub struct Tables {
     pub second: Range<usize>,
     /// For each switch whether the search for the first branches begins with its first branch.
     pub first_branches: Vec<bool>,
-    /// The states that keep what memories have followed.
+    /// The states that keep what memories have followed and what is held of samples.
     pub memories: Vec<usize>,
+    /// The switches of clocks.
+    pub clocks: Vec<usize>,
     /// The laws that can give what is not finite, each the element's kind and name, in the order of the program.
     pub fallible: Vec<(&'static str, String)>,
     /// The joints of the loops whose pivots nothing shows to keep away from zero, in the order of the program.
@@ -111,6 +113,7 @@ pub fn tables(model: &Compiled, counted: Counted) -> Tables {
         memories: (0..equations.states.len())
             .filter(|&state| matches!(equations.states[state].origin, Origin::Memory(_)))
             .collect(),
+        clocks: (0..equations.switches.len()).filter(|&k| equations.switches[k].clock.is_some()).collect(),
         first_branches: equations.switches.iter().map(|switch| switch.remembers).collect(),
         fallible: equations.fallible.iter().map(|law| (law.kind, law.element.clone())).collect(),
         turning: equations.turning().map(|law| law.element.clone()).collect(),

@@ -19,6 +19,8 @@ use super::plant::{ByInputs, Derivatives, Plant, at_rest, momenta};
 /// States that a linear model does not have, and why.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct LeftOut {
+    /// What memories keep and samples hold, which stays as it is.
+    pub held: Vec<String>,
     /// Integrals that only outputs ask for.
     pub integrals: Vec<String>,
     /// Orientations with the number of their entries that are states and the number of rotations in place of them.
@@ -27,6 +29,16 @@ pub struct LeftOut {
     pub dependent: Vec<String>,
     /// Coordinates that nothing changes, or time alone.
     pub still: Vec<String>,
+}
+
+impl LeftOut {
+    /// The same where the states of these names are held, why ever else they are left out.
+    pub(super) fn holding(mut self, held: Vec<String>) -> Self {
+        for others in [&mut self.integrals, &mut self.dependent, &mut self.still] {
+            others.retain(|name| !held.contains(name));
+        }
+        Self { held, ..self }
+    }
 }
 
 /// A coordinate that changes by itself: nothing in the model changes its rate.
@@ -125,6 +137,7 @@ impl Manifold {
             turning: &all.turning * expanded,
             chart: all.from_states.select_rows(&kept),
             left_out: LeftOut {
+                held: Vec::new(),
                 integrals: all.integrals.iter().map(|&name| name.to_owned()).collect(),
                 orientations: all.orientations,
                 dependent: dependent.iter().map(name).collect(),

@@ -52,6 +52,11 @@ pub(super) struct Plant {
 }
 
 impl Plant {
+    /// The names of the states that only instants change: what memories keep and samples hold.
+    pub fn held(&self) -> Vec<String> {
+        self.model.memories().into_iter().map(|state| self.description.states[state].name.to_owned()).collect()
+    }
+
     /// `mechanism` at time `t` (s). Where its switches are in branches that are not known the signs of their guards
     /// decide.
     pub fn at(model: &dyn Differentiable, t: f64, negative: Option<Vec<bool>>) -> Result<Self, ParameterError> {

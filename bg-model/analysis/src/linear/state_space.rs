@@ -122,7 +122,7 @@ fn linearised(plant: &Plant, t: f64, x: &DVector<f64>) -> Result<StateSpace, Lin
         modes: modes(&a, &manifold.coordinates)?,
         states,
         a,
-        left_out: manifold.left_out,
+        left_out: manifold.left_out.holding(plant.held()),
     })
 }
 

@@ -44,6 +44,7 @@ impl StateSpace {
         for (names, why) in [
             (&left_out.dependent, "follows from the others"),
             (&left_out.still, "cannot change here"),
+            (&left_out.held, "held as it is"),
             (&left_out.integrals, "left out: an integral that only outputs ask for"),
         ] {
             names.iter().for_each(|name| {

@@ -5,6 +5,7 @@
 
 use std::rc::Rc;
 
+use bg_model::clock;
 use bg_model::dynamics::Machine;
 use bg_model::failure::Origin;
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
@@ -37,6 +38,8 @@ pub(crate) struct Stood {
     negative: Option<Vec<bool>>,
     /// All positive, before they are found.
     none: Vec<bool>,
+    /// Up to when samples are computed, s.
+    computed: f64,
     /// The run from here on, once there is one.
     run: Option<Run>,
 }
@@ -90,7 +93,7 @@ impl Stood {
         let x = model.start().map_err(|fault| Fault::Start(fault.to_string()))?;
         let (size, largest) = (nominals(&*model, t, &x), x.iter().map(|x| x.abs()).collect());
         let none = vec![false; model.switches()];
-        Ok(Self { model, t, start: x.clone(), x, size, largest, negative: None, none, run: None })
+        Ok(Self { model, t, start: x.clone(), x, size, largest, negative: None, none, computed: t, run: None })
     }
 
     /// Time, s.
@@ -185,11 +188,15 @@ impl Stood {
         Ok(is_off)
     }
 
-    /// An event: projects the state, lets it jump where something hits a stop, finds the branches that hold from here
-    /// on. Gives whether the state has changed.
+    /// An event: projects the state, computes samples at an instant of their clock, lets the state jump where something
+    /// hits a stop, finds the branches that hold from here on. Gives whether the state has changed.
     pub fn settle(&mut self, rtol: f64) -> Result<bool, Fault> {
         let before = self.x.clone();
         self.stand(DRIFT)?;
+        if self.t > self.computed {
+            self.computed = self.t;
+            self.x = clock::computed(&*self.model, self.t, &self.x, self.negative.as_deref());
+        }
         if self.model.switches() > 0 {
             // A run of no length finds branches and impacts.
             let Run { mut method, mut ongoing } = self.run_from_here();
@@ -206,7 +213,7 @@ impl Stood {
 
     /// The first instant after the time at which a step must end, s; infinity where there is none.
     pub fn next_break(&self) -> f64 {
-        self.model.next_break(self.t)
+        self.model.next_break(self.t).min(clock::next(&self.model.clocks(), self.t))
     }
 
     /// Goes on to time `to` (s), over all events. On failure it stands where the run has come to.
@@ -214,6 +221,7 @@ impl Stood {
         let mut run = self.run.take().unwrap_or_else(|| self.run_from_here());
         let outcome = run.ongoing.drive(&*self.model, &mut run.method, to, &settings(rtol), &mut ());
         (self.t, self.x) = (run.ongoing.time(), run.ongoing.state().to_vec());
+        self.computed = self.t;
         self.negative = Some(run.ongoing.negative().to_vec());
         raise(&mut self.largest, &self.x);
         self.run = Some(run);
@@ -243,7 +251,7 @@ impl Stood {
     /// # Errors
     /// The model cannot stand there.
     pub fn place(&mut self, Place { t, x, largest, negative, step }: &Place) -> Result<(), Fault> {
-        self.t = *t;
+        (self.t, self.computed) = (*t, *t);
         self.set_states(x);
         raise(&mut self.largest, largest);
         self.negative.clone_from(negative);

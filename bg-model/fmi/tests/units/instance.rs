@@ -15,6 +15,7 @@ static PENDULUM: Of<Pendulum> = Of::NEW;
 static BALL: Of<Ball> = Of::NEW;
 static SHAKER: Of<Shaker> = Of::NEW;
 static TIMED: Of<Timed> = Of::NEW;
+static SAMPLED: Of<Sampled> = Of::NEW;
 
 bond_graph! {
     /// A mass whose force depends on an input, on a state and on the time.
@@ -26,6 +27,19 @@ bond_graph! {
         MSe push = force * (2 + sin(7 * t)) + 1e3 * cos(5 * t) + force * force * tanh(3 * motion.flow) / unit;
         push -> motion -> inertia; motion -> spring;
         observe { x: m = spring.q; power: W = force * motion.flow; push: N = push.effort }
+    }
+}
+
+bond_graph! {
+    /// A wheel whose speed a computer keeps.
+    graph Sampled {
+        every 30 ms offset 10 ms {
+            sample error: rad/s = 10 - shaft.flow;
+            sample sum: rad = sum.last + 30 ms * error;
+            sample torque: N*m = 3 * error + 9 * sum;
+        }
+        MSe motor = torque; 1 shaft: rotation; I wheel = 0.5; R rub = 0.4; motor -> shaft -> wheel; shaft -> rub;
+        observe { speed: rad/s = shaft.flow; torque: N*m = torque }
     }
 }
 
@@ -74,7 +88,7 @@ fn exchanged(instance: &mut Instance, t_end: f64, h: f64) -> u32 {
     let (n, g) = (instance.state_count(), instance.guard_count());
     let (mut t, mut x, mut guards, mut before) = (0.0, vec![0.0; n], vec![0.0; g], vec![0.0; g]);
     let mut events = 0;
-    instance.update().unwrap();
+    let mut next_event = instance.update().unwrap().next_event.unwrap_or(f64::INFINITY);
     instance.enter_continuous().unwrap();
     instance.states(&mut x).unwrap();
     instance.guards(&mut before).unwrap();
@@ -93,7 +107,8 @@ fn exchanged(instance: &mut Instance, t_end: f64, h: f64) -> u32 {
         sum
     };
     while t < t_end {
-        let (mut low, mut high) = (0.0, h.min(t_end - t));
+        let (mut low, mut high) = (0.0, h.min(t_end - t).min(next_event - t));
+        let is_timed = t + high >= next_event;
         let mut end = to(instance, t, &x, high);
         instance.guards(&mut guards).unwrap();
         let crossed = |now: &[f64], before: &[f64]| now.iter().zip(before).any(|(a, b)| a * b < 0.0);
@@ -109,10 +124,18 @@ fn exchanged(instance: &mut Instance, t_end: f64, h: f64) -> u32 {
         }
         (t, x) = (t + high, end);
         let needed = instance.completed_step().unwrap();
-        if needed || is_event {
+        let is_timed = is_timed && !is_event;
+        if needed || is_event || is_timed {
             events += u32::from(is_event);
             instance.enter_event().unwrap();
-            instance.update().unwrap();
+            if is_timed {
+                t = next_event;
+                instance.set_time(t).unwrap();
+            }
+            let update = instance.update().unwrap();
+            // What an instant computes it computes once.
+            assert!(!is_timed || update.states_changed && !instance.update().unwrap().states_changed);
+            next_event = update.next_event.unwrap_or(f64::INFINITY);
             instance.enter_continuous().unwrap();
             instance.states(&mut x).unwrap();
         }
@@ -128,6 +151,24 @@ fn model_exchange_leads_where_our_run_does() {
     let angle = get(&mut instance, &PENDULUM, Kind::Output(0));
     let wanted = own(&Pendulum::new(Default::default()).unwrap(), 1.0, 1e-10, "angle");
     assert!((angle - wanted).abs() < 1e-8, "{angle} {wanted}");
+}
+
+/// A host steps to the instants that the unit names as its next events; in Co-Simulation the unit does.
+#[test]
+fn samples_are_computed_at_the_instants_of_their_clock() {
+    let model = Sampled::new(Default::default()).unwrap();
+    let [speed, torque] = ["speed", "torque"].map(|output| own(&model, 0.97, 1e-11, output));
+    let mut exchange = begun(&SAMPLED, Interface::ModelExchange, 1e-9);
+    exchanged(&mut exchange, 0.97, 7e-3);
+    let mut simulation = begun(&SAMPLED, Interface::CoSimulation, 1e-11);
+    for k in 0..97 {
+        simulation.step(f64::from(k) * 0.01, 0.01).unwrap();
+    }
+    for instance in [&mut exchange, &mut simulation] {
+        assert!((get(instance, &SAMPLED, Kind::Output(0)) - speed).abs() < 1e-9);
+        // 0.97 s is an instant: what is held is that of it.
+        assert!((get(instance, &SAMPLED, Kind::Output(1)) - torque).abs() < 1e-8);
+    }
 }
 
 #[test]

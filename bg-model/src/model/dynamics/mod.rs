@@ -25,6 +25,7 @@ use crate::model::assembly::AssemblyError;
 use crate::model::capability::SeriesSize;
 #[cfg(doc)]
 use crate::model::capability::{Elimination, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
+use crate::model::clock::Clock;
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Sparsity, differences};
@@ -64,6 +65,11 @@ pub trait Dynamics<S: Scalar = f64> {
 
     /// [`System::memories`].
     fn memories(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
+    /// [`System::clocks`] with [`System::instants`].
+    fn clocks(&self) -> Vec<Clock<S>> {
         Vec::new()
     }
 

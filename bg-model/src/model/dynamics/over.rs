@@ -10,6 +10,7 @@ use nalgebra::SVector;
 use super::{Dynamics, Machine};
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::{Impacts, Joints, Reversed, Storages};
+use crate::model::clock::{self, Clock};
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::scalar::Scalar;
@@ -44,6 +45,10 @@ where
         let mut values = SVector::from_column_slice(guards);
         self.0.guards(t, &SVector::from_column_slice(x), &each(negative), &mut values);
         guards.copy_from_slice(values.as_slice());
+    }
+
+    fn clocks(&self) -> Vec<Clock<S>> {
+        clock::listed(self.0.clocks(), |instants| self.0.instants(instants))
     }
 
     fn memories(&self) -> Vec<usize> {

@@ -14,6 +14,7 @@ use crate::model::assembly::AssemblyError;
 use crate::model::capability::{
     Elimination, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, SeriesSize, Storages,
 };
+use crate::model::clock::{self, Clock};
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Field, Sparsity, differences};
@@ -93,6 +94,10 @@ where
 
     fn guards(&self, t: f64, x: &[f64], negative: &[bool], guards: &mut [f64]) {
         self.of.guards(t, values(x), switches(negative), values_mut(guards));
+    }
+
+    fn clocks(&self) -> Vec<Clock<f64>> {
+        clock::listed(self.of.clocks(), |instants| self.of.instants(instants))
     }
 
     fn memories(&self) -> Vec<usize> {

@@ -16,6 +16,7 @@ mod tests;
 
 use thiserror::Error;
 
+use crate::model::clock::{self, Clock};
 use crate::model::dynamics::{Dynamics, Machine};
 use crate::model::scalar::{DoubleDouble, Scalar};
 use crate::solve::failure::switch_text;
@@ -192,6 +193,9 @@ struct Run<'a, S: Scalar> {
     steps: u64,
     rejected: u64,
     rate_evaluations: u64,
+    clocks: Vec<Clock<S>>,
+    /// The last instant of a clock, s, up to which samples are computed.
+    computed: f64,
 }
 
 impl<'a, S: Scalar<Switch = bool>> Run<'a, S> {
@@ -212,6 +216,8 @@ impl<'a, S: Scalar<Switch = bool>> Run<'a, S> {
             steps: 0,
             rejected: 0,
             rate_evaluations: 0,
+            clocks: system.clocks(),
+            computed: span.t0,
         }
     }
 
@@ -219,12 +225,27 @@ impl<'a, S: Scalar<Switch = bool>> Run<'a, S> {
     /// law.
     fn advance_over_breaks(&mut self, target: f64) -> Result<(), Fault> {
         loop {
-            let next = self.system.next_break(self.t.to_f64());
-            if !(next > self.t.to_f64() && next < target) {
-                return self.advance(target);
+            let now = self.t.to_f64();
+            let next = self.system.next_break(now).min(clock::next(&self.clocks, now));
+            if !(next > now && next < target) {
+                self.advance(target)?;
+                return self.compute_samples();
             }
             self.advance(next)?;
+            self.compute_samples()?;
         }
+    }
+
+    /// Computes the samples of the model where an instant of a clock is reached for the first time.
+    fn compute_samples(&mut self) -> Result<(), Fault> {
+        let t = self.t.to_f64();
+        if !(clock::is_due(&self.clocks, t) && t > self.computed) {
+            return Ok(());
+        }
+        self.computed = t;
+        clock::compute_due(self.system, &self.clocks, t, &self.negative, &mut self.x);
+        // Guards that this moves to the wrong side change their branches at once.
+        self.switch(vec![false; self.negative.len()])
     }
 
     /// Steps until `target` (s) is reached exactly.

@@ -8,6 +8,7 @@
 
 use nalgebra::DVector;
 
+use crate::model::clock;
 use crate::model::dynamics::Dynamics;
 use crate::model::reactions::{Collision, impacts_of};
 use crate::model::scalar::slopes::WIDTH;
@@ -56,9 +57,18 @@ fn delays(
     x: &[Gradient],
     event: &Switching,
 ) -> Option<[f64; WIDTH]> {
+    if let Some(instant) = instant(system, event) {
+        return Some(instant.slopes());
+    }
     let (k, speed) = passed(plain, event)?;
     let delays = guards(system, event, 0.0, x)[k].slopes().map(|slope| -slope / speed);
     delays.iter().all(|delay| delay.is_finite()).then_some(delays)
+}
+
+/// The instant, s, where samples are computed at it: that of the clock, wherever the state has come to.
+pub(super) fn instant(system: &dyn Dynamics<Gradient>, event: &Switching) -> Option<Gradient> {
+    let clocks = system.clocks();
+    clocks.iter().find(|clock| event.reached[clock.switch])?.at(event.before.t)
 }
 
 /// The guard that decides on the instant, and how fast it passes through zero, in its unit per s. `plain` has slopes of
@@ -98,14 +108,21 @@ pub(super) fn struck(
         let mut collision = Collision::new(stops, system.kept_of_stops());
         collision.strike(&impacts_of(system), (t, &mut x), negative_before, closed, is_low);
     }
+    if instant(system, event).is_some() {
+        let clocks = system.clocks();
+        let ticking = clocks.iter().map(|clock| clock.switch).filter(|&switch| reached[switch]);
+        clock::compute(system, &ticking.collect::<Vec<_>>(), t, negative_before, &mut x);
+        return x;
+    }
     // As the step to the event and the event itself do: what a memory follows is taken at this instant, which depends
     // on the parameters.
     let changed = negative_before.iter().zip(reached).map(|(negative, reached)| negative != reached).collect();
-    for memory in system.memories() {
+    let memories = system.memories();
+    if !memories.is_empty() {
         for negative in [negative_before, &changed] {
             let mut projected = x.clone();
             system.project(t, negative, &mut projected);
-            x[memory] = projected[memory];
+            memories.iter().for_each(|&memory| x[memory] = projected[memory]);
         }
     }
     x

@@ -17,7 +17,7 @@ pub struct Switching {
     pub negative_before: Vec<bool>,
     /// The branches after.
     pub negative_after: Vec<bool>,
-    /// The switches whose guards have come to zero.
+    /// The switches whose guards have come to zero, and those of clocks whose instant it is.
     pub reached: Vec<bool>,
     /// The switches of stops that something has hit and left again.
     pub left: Vec<bool>,
@@ -100,7 +100,7 @@ impl<'s, 'a> Inside<'s, 'a> {
 /// Is told what a run gives, in the order of time. Every method does nothing by default.
 pub trait Observer {
     /// The state `x` at a sample instant `t` (s) and the branches of the step that leads there. At the instant of an
-    /// impact it is the state before it; at the start of a run the state after it.
+    /// impact it is the state before it; at the start of a run, and at the instants of clocks, the state after it.
     fn sample(&mut self, _t: f64, _x: &[f64], _negative: &[bool]) {}
 
     /// What errors are measured by from here on: told at the start, and before a step whose end has outgrown the sizes

@@ -12,6 +12,7 @@ use super::sampling::Sampling;
 use super::settings::{Settings, Span};
 use super::sizes::SizeMonitor;
 use super::step_size::{self, StepSizeController};
+use crate::model::clock::{self, Clock};
 #[cfg(feature = "std")]
 use crate::model::reactions::LoopsInLanes;
 use crate::model::reactions::{After, Broken, Collision, EndMonitor, LoopMonitor};
@@ -52,6 +53,8 @@ pub(crate) struct Run<'a> {
     pub sizes: SizeMonitor,
     /// Of the error estimates, where the tolerances may be below it.
     pub rounding: Option<RoundingMonitor>,
+    /// What computes samples of the model.
+    clocks: Vec<Clock>,
     /// Room for the state at a sample.
     sample: Vec<f64>,
 }
@@ -74,7 +77,8 @@ impl<'a> Run<'a> {
         settings: &'a Settings,
     ) -> Self {
         let (system, states) = (stepper.system, stepper.system.states());
-        let has_breaks = system.next_break(span.t0) < f64::INFINITY;
+        let clocks = system.clocks();
+        let has_breaks = system.next_break(span.t0) < f64::INFINITY || !clocks.is_empty();
         let (loops, ends) = (LoopMonitor::new(system), EndMonitor::new(system));
         let collision = system.stops().map(|stops| Collision::new(stops, system.kept_of_stops()));
         Self {
@@ -92,6 +96,7 @@ impl<'a> Run<'a> {
             collision,
             sizes: SizeMonitor::new(&settings.tolerances, states, span.t0),
             rounding: RoundingMonitor::new(settings.tolerances.relative),
+            clocks,
             sample: vec![0.0; states],
         }
     }
@@ -204,11 +209,13 @@ impl<'a> Run<'a> {
                 self.end_span(self.stepper.end.t);
                 self.accept(observer)?;
                 self.change_branches(crossing, observer)?;
+                self.compute_samples(observer)?;
                 Ok(Some(Ended::ByCondition))
             }
             Ok(None) => {
                 let is_done = self.accept(observer)?;
-                if self.change_branches(crossing, observer)? {
+                let jumps = self.change_branches(crossing, observer)?;
+                if self.compute_samples(observer)? || jumps {
                     return Ok(Some(self.end_at_start(observer)));
                 }
                 Ok(is_done.then_some(Ended::ByObserver))
@@ -301,7 +308,7 @@ impl<'a> Run<'a> {
         let latest = self.span.t_end - self.controller.least(self.span.t_end);
         let mut last = t;
         loop {
-            let next = self.stepper.system.next_break(last);
+            let next = self.stepper.system.next_break(last).min(clock::next(&self.clocks, last));
             // A system that gives no later one has none.
             if next.is_nan() || next <= last || next >= latest {
                 return f64::INFINITY;
@@ -342,7 +349,13 @@ impl<'a> Run<'a> {
             let projections = self.projections();
             observer.inside(&mut Inside::of(&mut self.stepper, projections));
         }
-        self.sample(observer, t);
+        if clock::is_due(&self.clocks, t) {
+            while let Some(instant) = self.sampling.next_before(t - clock::rounding(t)) {
+                self.sample_inside(observer, instant);
+            }
+        } else {
+            self.sample(observer, t);
+        }
         self.stepper.advance();
         observer.step(t, self.span.t_end, &self.stepper.statistics);
         let is_done = observer.is_done();
@@ -360,12 +373,62 @@ impl<'a> Run<'a> {
                 observer.sample(t, self.stepper.end.x.as_slice(), &self.stepper.negative);
                 continue;
             }
-            let part = (instant - self.stepper.start.t) / self.stepper.h;
-            let most = self.projections();
-            let Self { stepper, sample, .. } = self;
-            stepper.projected_sample(part.min(1.0), instant, most, sample);
-            observer.sample(instant, sample, &stepper.negative);
+            self.sample_inside(observer, instant);
         }
+    }
+
+    /// Gives a sample inside of the step.
+    fn sample_inside(&mut self, observer: &mut dyn Observer, instant: f64) {
+        let part = (instant - self.stepper.start.t) / self.stepper.h;
+        let most = self.projections();
+        let Self { stepper, sample, .. } = self;
+        stepper.projected_sample(part.min(1.0), instant, most, sample);
+        observer.sample(instant, sample, &stepper.negative);
+    }
+
+    /// At an instant of a clock, computes the samples of the model at the start of the next step. What the run is to
+    /// give at that instant is with them. Gives whether the condition has jumped through zero by that.
+    fn compute_samples(&mut self, observer: &mut dyn Observer) -> Result<bool, Cause> {
+        let t = self.stepper.start.t;
+        if !clock::is_due(&self.clocks, t) {
+            return Ok(false);
+        }
+        let (before, negative_before) = (self.stepper.start.clone(), self.stepper.negative.clone());
+        let none = vec![false; negative_before.len()];
+        let Stepper { system, start, negative, .. } = &mut self.stepper;
+        clock::compute_due(*system, &self.clocks, t, negative, start.x.as_mut_slice());
+        // Guards that this moves to the wrong side change their branches at once.
+        self.monitor.settle(&mut self.stepper, none.clone(), self.controller.reach());
+        self.check_start()?;
+        self.stepper.end.become_that(self.stepper.start.borrowed());
+        let (after, negative_after) = (self.stepper.start.clone(), self.stepper.negative.clone());
+        let mut reached = none.clone();
+        self.clocks.iter().for_each(|clock| reached[clock.switch] = clock.at(t).is_some());
+        let changed = (0..none.len()).filter(|&switch| negative_after[switch] != negative_before[switch]);
+        let changed: Vec<usize> = changed.collect();
+        observer.switched(&Switching {
+            before,
+            after,
+            negative_before,
+            negative_after,
+            reached,
+            left: none,
+            jumps: false,
+        });
+        for switch in changed {
+            self.stepper.statistics.events += 1;
+            observer.event(t, self.stepper.start.x.as_slice(), switch, &self.stepper.negative);
+        }
+        self.sample(observer, t);
+        self.condition_jumps()
+    }
+
+    /// Whether the condition has jumped through zero at the start of the next step.
+    fn condition_jumps(&mut self) -> Result<bool, Cause> {
+        let reach = self.controller.reach();
+        let condition = self.condition.as_mut();
+        let jumps = condition.map_or(Ok(false), |condition| condition.jumps(&mut self.stepper, reach));
+        jumps.map_err(|value| self.not_finite_monitored(Faulty::Condition(value), 0.0))
     }
 
     /// How often a state inside of a step is projected at most.
@@ -415,10 +478,7 @@ impl<'a> Run<'a> {
                 return Err(self.accumulate(&switches));
             }
         }
-        let reach = self.controller.reach();
-        let condition = self.condition.as_mut();
-        let jumps = condition.map_or(Ok(false), |condition| condition.jumps(&mut self.stepper, reach));
-        jumps.map_err(|value| self.not_finite_monitored(Faulty::Condition(value), 0.0))
+        self.condition_jumps()
     }
 
     /// Lets the switches whose guards are at zero find their branches at the start of the next step, where the state

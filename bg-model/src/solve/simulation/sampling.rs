@@ -33,6 +33,12 @@ impl<'a> Sampling<'a> {
         Some(instant)
     }
 
+    /// The next instant before `t` (s) inside of a step, as [`Sampling::next_up_to`].
+    pub fn next_before(&mut self, t: f64) -> Option<f64> {
+        let is_inside = !matches!(self.samples, Samples::Steps) && self.instant(t)? < t;
+        is_inside.then(|| self.next_up_to(t)).flatten()
+    }
+
     /// Whether there is an instant up to `t` (s).
     #[cfg(feature = "std")]
     pub fn is_due(&self, t: f64) -> bool {

@@ -361,3 +361,70 @@ fn a_cascade_turns_a_motor_to_an_angle() {
     let late = ran(4.0);
     assert!((late.of("angle") - 4.0 * PI).abs() < 0.1 && late.of("speed").abs() < 0.1, "{}", late.of("angle"));
 }
+
+/// Beside difference equations: angle and speed of a wheel under a held torque are exact from instant to instant.
+#[test]
+fn sampled_controllers_are_their_difference_equations() {
+    let ran = after(
+        0.9,
+        "use controllers;",
+        "part place: SampledPositionControl { wanted = 2 rad; measured = shaft.displacement; period = 4; gain = 6; limit = 5 rad/s; }
+        part speed: SampledSpeedControl {
+            wanted = place.command; measured = shaft.flow; period = 1; gain = 3; reset = 0.1 s; limit = 4 N*m; tracking = 0.05 s;
+        }
+        MSe motor = speed.command; 1 shaft: rotation; I wheel = 0.1; motor -> shaft -> wheel;
+        observe { angle: rad = shaft.displacement; turning: rad/s = shaft.flow; all of place; all of speed }",
+    );
+    let (inertia, period) = (0.1, 1e-3);
+    let (mut angle, mut turning, mut wanted, mut integral, mut torque): (f64, f64, f64, f64, f64) =
+        (0.0, 0.0, 0.0, 0.0, 0.0);
+    for k in 0..=900 {
+        if k > 0 {
+            angle += period * turning + 0.5 * period * period * torque / inertia;
+            turning += period * torque / inertia;
+        }
+        if k % 4 == 0 {
+            wanted = (6.0 * (2.0 - angle)).clamp(-5.0, 5.0);
+        }
+        let error = wanted - turning;
+        let wish = 3.0 * error + integral;
+        torque = wish.clamp(-4.0, 4.0);
+        integral += period * (3.0 / 0.1 * error + (torque - wish) / 0.05);
+    }
+    ran.is("angle", angle, 1e-9);
+    ran.is("turning", turning, 1e-9);
+    ran.is("speed.command", torque, 1e-8);
+    ran.is("place.command", wanted * 30.0 / PI, 1e-8);
+}
+
+#[test]
+fn a_sampled_current_control_holds_its_voltage() {
+    let ran = after(
+        0.02,
+        "use controllers;",
+        "part control: SampledCurrentControl { wanted = 3 A; measured = coil.flow; period = 0.5; gain = 2; reset = 4 ms; limit = 12 V; tracking = 2 ms; }
+        MSe bridge = control.command; 1 coil: electrical; I winding = 2e-3; R copper = 1.5; bridge -> coil -> winding; coil -> copper;
+        observe { current: A = coil.flow; all of control }",
+    );
+    let (stays, period): (f64, f64) = ((-1.5 * 0.5e-3 / 2e-3_f64).exp(), 0.5e-3);
+    let (mut current, mut integral, mut volt): (f64, f64, f64) = (0.0, 0.0, 0.0);
+    for k in 0..=40 {
+        if k > 0 {
+            current = stays * current + (1.0 - stays) / 1.5 * volt;
+        }
+        let error = 3.0 - current;
+        let wish = 2.0 * error + integral;
+        volt = wish.clamp(-12.0, 12.0);
+        integral += period * (2.0 / 4e-3 * error + (volt - wish) / 2e-3);
+    }
+    ran.is("current", current, 1e-9);
+    ran.is("control.command", volt, 1e-9);
+}
+
+/// A part of the library cannot be given another parameter: what it has is said.
+#[test]
+fn a_parameter_that_a_part_has_not_is_answered_by_those_that_it_has() {
+    let said = refused("use gears;", "part pair: GearPair { first_teeth = 20; } 1 j: rotation; pair.first -> j;");
+    assert!(said.contains("[BG0802]") && said.contains("this part of the library has: `ratio`"), "{said}");
+    assert!(!said.contains("declare"), "{said}");
+}

@@ -65,7 +65,7 @@ impl Emission<'_> {
             quote!(::bg_model::assembly::Gap { joint: #joint, component: #component, unit: #unit })
         });
         let requirements = requirements.iter().map(requirement);
-        let Starting { guesses, gaps: of_gaps, gap_sizes, start_state, sides: of_sides } = starting;
+        let Starting { guesses, gaps: of_gaps, gap_sizes, start_state, sides: of_sides, clocks: _ } = starting;
         let routines = [
             ("Guesses", Some(guesses)),
             ("Gaps", Some(of_gaps)),

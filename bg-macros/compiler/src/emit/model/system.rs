@@ -25,7 +25,7 @@ impl Emission<'_> {
         let (rate, guards, project) = (self.rate(), self.guards(), self.project());
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
         let (next_break, first_branches, iterations) = (self.next_break(), self.first_branches(), self.iterations());
-        let memories = self.memories();
+        let (memories, clocks) = (self.memories(), self.clocks());
         let (runs_in_lanes, pivots) = (self.runs_in_lanes(), self.pivots());
         quote! {
             #iterations
@@ -36,6 +36,7 @@ impl Emission<'_> {
                 #next_break
                 #first_branches
                 #memories
+                #clocks
                 #runs_in_lanes
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
@@ -166,6 +167,21 @@ impl Emission<'_> {
             quote! {
                 fn memories(&self) -> &'static [usize] {
                     &[#(#memories),*]
+                }
+            }
+        })
+    }
+
+    /// The switches of clocks and their instants; nothing where there are none.
+    fn clocks(&self) -> Option<TokenStream> {
+        let clocks = &self.tables.clocks;
+        (!clocks.is_empty()).then(|| {
+            quote! {
+                fn clocks(&self) -> &'static [usize] {
+                    &[#(#clocks),*]
+                }
+                fn instants(&self, instants: &mut [S]) {
+                    Self::clocks(&self.values, &[], instants);
                 }
             }
         })

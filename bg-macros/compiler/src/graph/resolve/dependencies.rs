@@ -38,10 +38,13 @@ impl Resolver {
 
     /// Lets that are defined by themselves.
     pub(super) fn let_circles(&mut self) {
-        for (index, definition) in self.graph.lets.iter().enumerate() {
+        // A circle of what `let`s are at an instant has a sample in it.
+        for (index, definition) in self.graph.lets.iter().enumerate().take(self.written.len()) {
             if self.deep_references(&definition.value, &|_| true).contains(&Reference::Let(index)) {
                 let name = definition.name.text.clone();
-                self.faults.push(Fault::new(definition.name.span, &GraphFault::LetCycle { name }));
+                let is_sample = matches!(definition.value.kind, TermKind::AtInstant(..));
+                let fault = if is_sample { GraphFault::SampleCycle { name } } else { GraphFault::LetCycle { name } };
+                self.faults.push(Fault::new(definition.name.span, &fault));
             }
         }
     }
@@ -233,8 +236,13 @@ impl Resolver {
         let known = |quantity| if let Quantity::Known(dimension) = quantity { dimension } else { Dimension::NONE };
         let closed: Vec<_> = self.graph.closes.iter().map(|close| types.of(&close.gap, None, &mut faults)).collect();
         let mut integrands = Vec::new();
-        for Integral { name, value, declared, start, .. } in &self.graph.integrals {
-            let Some(declared) = *declared else {
+        for (index, Integral { name, value, declared, start, follows, .. }) in self.graph.integrals.iter().enumerate() {
+            let of_signal = || follows.map(|_| types.of_own(index));
+            let of_signal = declared.is_none().then(of_signal).flatten();
+            if let Some((shape, _)) = of_signal {
+                expect_shape(value, "the signal of a delay", shape, &mut faults);
+            }
+            let Some(declared) = declared.or(of_signal.map(|(_, quantity)| known(quantity))) else {
                 let (shape, quantity) = types.of(value, None, &mut faults);
                 expect_shape(value, "an integrand", shape, &mut faults);
                 integrands.push(known(quantity));

@@ -5,6 +5,7 @@
 use proc_macro2::Span;
 
 use super::quantity::scaled;
+use super::samples::DELAY;
 use super::tables::nearest_call;
 use super::{Entity, Place, Resolver};
 use crate::fault::near_miss;
@@ -51,6 +52,9 @@ impl Resolver {
         let (table, order) = table_called(&function.text);
         if let Some(&Entity::Table(table)) = self.names.get(table) {
             return self.lookup(Lookup { table, order }, function, terms);
+        }
+        if function.text == DELAY {
+            return self.delayed(function, terms, place);
         }
         let builtin = Builtin::named(&function.text);
         let expected = match function.text.as_str() {
@@ -126,6 +130,7 @@ impl Resolver {
     /// A name: a quantity, a property of one (`pin.flow`), or a component of either (`pin.flow.x`).
     fn named(&mut self, name: &str, span: Span, place: Place<'_>) -> Term {
         if let Some(reference) = self.quantity(name, place) {
+            let reference = self.at_instant(reference, place);
             let term = Term { kind: TermKind::Reference(reference), span };
             return match reference {
                 Reference::Parameter(index) => scaled(term, BinaryOperator::Multiply, self.parameters[index]),
@@ -137,12 +142,15 @@ impl Resolver {
             && let Some(component) = ["x", "y", "z"].iter().position(|letter| *letter == last)
             && let Some(reference) = self.quantity(whole, place)
         {
+            let reference = self.at_instant(reference, place);
             let whole = Term { kind: TermKind::Reference(reference), span };
             return Term { kind: TermKind::Component(Box::new(whole), component), span };
         }
         let owner = name.rsplit_once('.').map_or(name, |(owner, _)| owner);
         if let Some(Entity::Table(_)) = self.names.get(name) {
             self.fault(span, &GraphFault::TableWithoutArgument { name: name.to_owned() });
+        } else if let Some(Entity::Last(_)) = self.names.get(name) {
+            self.fault(span, &GraphFault::LastOutside { sample: owner.to_owned() });
         } else if let Some(Entity::Node(_)) = self.names.get(name) {
             self.fault(span, &GraphFault::NotAValue { name: name.to_owned() });
         } else if ![name, owner].iter().any(|name| self.names.get(*name) == Some(&Entity::Several)) {
@@ -171,6 +179,7 @@ impl Resolver {
             Some(Entity::Let(index)) => return Some(Reference::Let(*index)),
             Some(Entity::Track(index)) => return Some(Reference::Track(*index)),
             Some(Entity::Own(index)) => return Some(Reference::Own(*index)),
+            Some(&entity @ (Entity::Sample(_) | Entity::Last(_))) => return self.sampled(entity, place),
             Some(Entity::Table(_) | Entity::Node(_) | Entity::Several) | None => {}
         }
         let (whole, property) = name.rsplit_once('.')?;

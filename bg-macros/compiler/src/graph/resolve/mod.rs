@@ -6,6 +6,7 @@ mod connect;
 mod dependencies;
 mod expressions;
 mod quantity;
+mod samples;
 mod tables;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -37,6 +38,10 @@ pub enum Entity {
     Table(usize),
     /// A state of the graph's own.
     Own(usize),
+    /// A sample, an index into those of the resolver.
+    Sample(usize),
+    /// What was held of a sample before the instant.
+    Last(usize),
     /// A junction or element.
     Node(NodeId),
     /// A position or orientation.
@@ -58,6 +63,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
         .filter_map(|item| if let Item::Chain(chain) = item { Some(chain.clone()) } else { None })
         .collect();
     resolver.define(source);
+    resolver.graph.lets.append(&mut resolver.more);
     resolver.tracks(source);
     resolver.graph.drawing = source.drawing.map(&mut |quantity| resolver.term(quantity, Place::Plain));
     connect::bonds(&mut resolver.graph, &chains, &resolver.names, &resolver.junctions, &mut resolver.faults);
@@ -84,6 +90,15 @@ enum Place<'a> {
     Law(Option<&'a str>),
     Start,
     Observed,
+    /// At the instants of a clock, its index.
+    Instant(usize),
+}
+
+/// A sample: its state, and the `let` of what this becomes at an instant.
+#[derive(Clone, Copy)]
+struct Sampled {
+    own: usize,
+    new: usize,
 }
 
 struct Resolver {
@@ -100,6 +115,13 @@ struct Resolver {
     /// In what those of the inputs are.
     inputs: Vec<Unit>,
     observed: Vec<Option<Unit>>,
+    samples: Vec<Sampled>,
+    /// The `let`s as written, by their indices; none of those that stand for something else.
+    written: Vec<Option<ast::Let>>,
+    /// What `let`s that depend on samples are at an instant: by their indices, the index of another one.
+    at_instants: BTreeMap<usize, usize>,
+    /// The `let`s that come after those that have names.
+    more: Vec<Let>,
     /// Where each output is.
     outputs: BTreeMap<String, Span>,
     faults: Vec<Fault>,
@@ -129,6 +151,7 @@ impl Resolver {
             turns: Vec::new(),
             ways: Vec::new(),
             integrals: Vec::new(),
+            clocks: Vec::new(),
             drawing: Drawing::default(),
         };
         Self {
@@ -141,6 +164,10 @@ impl Resolver {
             parameters: Vec::new(),
             inputs: Vec::new(),
             observed: Vec::new(),
+            samples: Vec::new(),
+            written: Vec::new(),
+            at_instants: BTreeMap::new(),
+            more: Vec::new(),
             outputs: BTreeMap::new(),
             faults: Vec::new(),
         }
@@ -188,6 +215,8 @@ impl Resolver {
                 }
                 Item::Let(definition) => {
                     self.name(&definition.name, Entity::Let(lets));
+                    self.written.resize(lets, None);
+                    self.written.push(Some(definition.clone()));
                     lets += 1;
                 }
                 Item::Table(table) => self.table(table),
@@ -196,6 +225,14 @@ impl Resolver {
                     self.declare_state(&ast::Memory::kept(&memory.name), &memory.unit);
                     self.name(&memory.name, Entity::Let(lets));
                     lets += 1;
+                }
+                Item::Every(every) => {
+                    // Those of the clock come first.
+                    lets += 2;
+                    for sample in &every.samples {
+                        self.declare_sample(sample, lets);
+                        lets += 1;
+                    }
                 }
                 Item::Junction(junction) => {
                     self.junction(junction, NodeId(nodes));
@@ -212,6 +249,7 @@ impl Resolver {
                 _ => {}
             }
         }
+        self.written.resize(lets, None);
     }
 
     fn parameter(&mut self, parameter: &ast::Parameter) {
@@ -271,8 +309,13 @@ impl Resolver {
 
     /// A state of the graph's own, without its terms.
     fn declare_state(&mut self, name: &Name, unit: &ast::Unit) {
-        let unit = self.unit(unit);
         self.name(name, Entity::Own(self.graph.integrals.len()));
+        self.own(name, unit);
+    }
+
+    /// The state of this name.
+    fn own(&mut self, name: &Name, unit: &ast::Unit) {
+        let unit = self.unit(unit);
         let value = Term { kind: TermKind::Number(0.0), span: name.span };
         let (name, declared) = (name.text.clone(), Some(unit.dimension));
         let (dimension, start, follows) = (Dimension::NONE, None, None);
@@ -321,6 +364,10 @@ impl Resolver {
                 Item::Memory(memory) => {
                     self.memory(memory, own);
                     own += 1;
+                }
+                Item::Every(every) => {
+                    self.every(every, own);
+                    own += every.samples.len();
                 }
                 Item::Element(element) => self.element(element),
                 Item::Track(_) => {

@@ -9,7 +9,7 @@ use crate::source::library;
 pub enum PartFault {
     UnknownPart { name: String, near: Option<String> },
     OfRust { name: String },
-    UnknownParameter { part: String, name: String, near: Option<String> },
+    UnknownParameter { part: String, name: String, near: Option<String>, known: Vec<String> },
     GivenInside { part: String, name: String },
     ContainsItself { circle: Vec<String> },
     PortWithoutBond { of: String, ports: Vec<String> },
@@ -103,7 +103,15 @@ impl Explain for PartFault {
             F::UnknownPart { name, .. } => {
                 format!("declare `part {name} {{ ... }}`, or write the path of a part of elsewhere, `self::{name}`")
             }
-            F::UnknownParameter { name, .. } => format!("remove `{name}`, or declare `param {name}` in the part"),
+            F::UnknownParameter { part, known, .. } if library::home(part).is_some() && !known.is_empty() => {
+                format!("write one of those that this part of the library has: {}", listed(known))
+            }
+            F::UnknownParameter { name, known, .. } if known.is_empty() => {
+                format!("remove `{name}`, or declare `param {name}` in the part")
+            }
+            F::UnknownParameter { name, known, .. } => {
+                format!("declare `param {name}` in the part, or write one of those that it has: {}", listed(known))
+            }
             F::GivenInside { name, .. } => format!("remove `{name}`, or make it a parameter of the part"),
             F::ContainsItself { .. } => "take one of the uses out".to_owned(),
             F::PortWithoutBond { of, ports } => format!("bond it, `{of}.{} -> ...;`", ports[0]),

@@ -39,9 +39,11 @@ fn unknown(flat: &Flat, used: &Use, prefix: &str, name: &str) -> PartFault {
     if flat.items.iter().any(is_given) {
         return PartFault::GivenInside { part, name };
     }
-    let known = flat.items.iter().filter_map(open).filter_map(|known| known.text.strip_prefix(prefix));
-    let near = near_miss(&name, known).map(str::to_owned);
-    PartFault::UnknownParameter { part, name, near }
+    let known: Vec<&str> =
+        flat.items.iter().filter_map(open).filter_map(|known| known.text.strip_prefix(prefix)).collect();
+    let near = near_miss(&name, known.iter().copied()).map(str::to_owned);
+    let known = known.into_iter().map(str::to_owned).collect();
+    PartFault::UnknownParameter { part, name, near, known }
 }
 
 /// `front: Leg`

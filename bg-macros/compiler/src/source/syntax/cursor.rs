@@ -35,9 +35,9 @@ pub(super) struct Place {
 }
 
 /// The words of statements that end with their block.
-pub const BLOCKS: [&str; 17] = [
+pub const BLOCKS: [&str; 18] = [
     "graph", "observe", "scene", "ground", "body", "joint", "spring", "drive", "contact", "friction", "stop",
-    "orifice", "tune", "without", "rigid", "part", "for",
+    "orifice", "every", "tune", "without", "rigid", "part", "for",
 ];
 
 /// What is noted on the way.

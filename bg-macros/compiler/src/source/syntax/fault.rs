@@ -149,6 +149,8 @@ pub enum SyntaxFault {
     NoGraph,
     /// A file that is used by a macro call.
     UseInCall,
+    /// A sample that no clock computes.
+    SampleOutside,
 }
 
 impl Explain for SyntaxFault {
@@ -180,6 +182,7 @@ impl Explain for SyntaxFault {
             Self::Attribute => "BG0121",
             Self::NoGraph => "BG0122",
             Self::UseInCall => "BG0123",
+            Self::SampleOutside => "BG0124",
         }
     }
 
@@ -228,6 +231,7 @@ impl Explain for SyntaxFault {
             Self::Attribute => "found an attribute, expected none: the language has no attributes".into(),
             Self::NoGraph => "found no graph and no part, expected at least one".into(),
             Self::UseInCall => "found the use of a file in a macro call, expected it in a file".into(),
+            Self::SampleOutside => "a `sample` stands in the block of a clock, which says when it is computed".into(),
         }
     }
 
@@ -267,6 +271,7 @@ impl Explain for SyntaxFault {
             Self::MisplacedDocumentation => "write `//` instead of `///`".into(),
             Self::Attribute => "remove it".into(),
             Self::NoGraph => "write `graph NAME { ... }`".into(),
+            Self::SampleOutside => "write `every 1 ms { .. }` about it, with the time between two instants".into(),
             Self::UseInCall => {
                 "write `bond_graph!(file \"NAME.bond\")`, or the path of a part, such as `vehicles::Leg`".into()
             }

@@ -11,8 +11,8 @@ use super::{
 };
 use crate::fault::near_miss;
 use crate::source::ast::{
-    Bound, Choice, Close, Direction, Element, ElementKind, Expression, ExpressionKind, Held, Input, Item, Junction,
-    JunctionKind, LawVariable, Let, Memory, Name, Parameter, State, Table, Track, TrackKind, Unit,
+    Bound, Choice, Close, Direction, Element, ElementKind, Every, Expression, ExpressionKind, Held, Input, Item,
+    Junction, JunctionKind, LawVariable, Let, Memory, Name, Parameter, Sample, State, Table, Track, TrackKind, Unit,
 };
 use crate::source::words::{BETWEEN, BEYOND, ELEMENTS, ROLES, TRACKS, value_of};
 
@@ -33,7 +33,7 @@ const WORDS_OF_PART: &[&str] = {
 };
 
 /// The words of a graph.
-const WORDS: [&str; 42] = [
+const WORDS: [&str; 43] = [
     "param",
     "1",
     "R",
@@ -44,6 +44,7 @@ const WORDS: [&str; 42] = [
     "table",
     "state",
     "memory",
+    "every",
     "0",
     "Se",
     "Sf",
@@ -77,6 +78,9 @@ const WORDS: [&str; 42] = [
     "for",
     "scenes",
 ];
+
+/// The block of a clock.
+const EVERY: Place = Place { name: "`every`", words: &["sample"], list: false };
 
 /// Inside of `[3]` and `(effort u)`.
 const GROUP: Place = Place { name: "the group", words: &[], list: false };
@@ -121,6 +125,9 @@ fn item(cursor: &mut Cursor, items: &mut Vec<Item>) -> Parsed<()> {
             items.push(Item::ScenesOnly(cursor.scenes_only()?));
             Ok(())
         }
+        Some("sample") if cursor.word_ahead(1).is_some() => {
+            Err(cursor.note(cursor.span(), &SyntaxFault::SampleOutside))
+        }
         Some(word) if is_broken_chain(cursor, word) => chain(cursor, items),
         Some(word) => {
             let word = word.to_owned();
@@ -145,6 +152,7 @@ fn bond_graph_item(cursor: &mut Cursor, word: &str) -> Parsed<Item> {
         "table" => table(cursor).map(Item::Table),
         "state" => state(cursor).map(Item::State),
         "memory" => memory(cursor).map(Item::Memory),
+        "every" => every(cursor).map(Item::Every),
         "close" => close(cursor).map(Item::Close),
         "observe" => cursor.observe().map(Item::Observe),
         "part" => cursor.part_use().map(Item::Use),
@@ -276,6 +284,38 @@ fn memory(cursor: &mut Cursor) -> Parsed<Memory> {
     let kept = Memory::kept(&name);
     let otherwise = Expression { span: kept.span, kind: ExpressionKind::Name(kept) };
     Ok(Memory { following: Choice { comparison, left, right, then, otherwise }, name, unit, start })
+}
+
+/// `every E offset E { sample NAME: UNIT = E start E; .. }`
+fn every(cursor: &mut Cursor) -> Parsed<Every> {
+    cursor.advance();
+    if cursor.delimiter() == Some(Delimiter::Brace) {
+        return Err(cursor.unexpected("the time between two instants, such as `1 ms`"));
+    }
+    let period = cursor.expression()?;
+    let offset = if cursor.eat_word("offset").is_some() { Some(cursor.expression()?) } else { None };
+    let mut block = cursor.group(Delimiter::Brace, "`offset` or `{ sample NAME: UNIT = VALUE; }`", &EVERY)?;
+    let mut samples = Vec::new();
+    block.statements(|entry| {
+        if entry.word() != Some("sample") {
+            return Err(entry.unknown_statement());
+        }
+        samples.push(sample(entry)?);
+        Ok(())
+    });
+    Ok(Every { period, offset, samples })
+}
+
+/// `sample NAME: UNIT = E start E;`
+fn sample(cursor: &mut Cursor) -> Parsed<Sample> {
+    cursor.advance();
+    let name = cursor.plain_name("the sample")?;
+    let unit = declared_unit(cursor, "sample", &name)?;
+    cursor.expect("=")?;
+    let value = cursor.expression()?.in_unit(&unit);
+    let start = if cursor.eat_word("start").is_some() { Some(cursor.expression()?.in_unit(&unit)) } else { None };
+    cursor.end_statement(if start.is_some() { OPERATOR } else { "an operator, `start`" });
+    Ok(Sample { name, unit, value, start })
 }
 
 /// `table NAME: UNIT -> UNIT = [[x, y], ..], spline, held;`

@@ -104,6 +104,7 @@ impl Signals<'_> {
             }
             TermKind::Vector(parts) => self.nature_of_all(parts),
             TermKind::If(_, _, parts) => self.nature_of_all(&**parts),
+            TermKind::AtInstant(_, parts) => self.nature_of_all(&**parts),
         }
     }
 

@@ -128,7 +128,7 @@ impl Signals<'_> {
     /// A switch of the owner whose guard is not known yet.
     fn remember(&mut self, way: &str) -> u32 {
         let (element, guard) = (self.owner.clone(), self.pool.zero());
-        self.switches.push(Switch { element, condition: way.to_owned(), guard, remembers: true });
+        self.switches.push(Switch { element, condition: way.to_owned(), guard, remembers: true, clock: None });
         u32::try_from(self.switches.len() - 1).expect("fewer than 2^32 switches")
     }
 

@@ -179,6 +179,18 @@ pub struct Switch {
     /// Whether the guard depends on the switch's own branch, so that the past decides: sliding ends where the flow is
     /// zero, sticking where the effort is at its limit.
     pub remembers: bool,
+    /// The clock that it is of, if it is: its guard is 1, and only what computes samples at an instant takes the first
+    /// branch.
+    pub clock: Option<Clock>,
+}
+
+/// When a clock's samples are computed, s: at `first` + k `period`, k = 0, 1, 2...
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Clock {
+    /// The time from one instant to the next, of parameters.
+    pub period: Id,
+    /// The first instant, of parameters.
+    pub first: Id,
 }
 
 /// The condition of a stop's switch.
@@ -189,6 +201,9 @@ impl Switch {
     #[must_use]
     pub fn name(&self) -> String {
         let Self { element, condition, .. } = self;
+        if self.clock.is_some() {
+            return format!("an instant of `{condition}`");
+        }
         if self.remembers && condition == CLEAR {
             format!("being clear of `{element}`")
         } else if self.remembers {

@@ -15,7 +15,10 @@ impl StateEquations {
         }
         roots.extend(&mut self.guesses);
         roots.extend(self.gaps.iter_mut().map(|gap| &mut gap.value));
-        roots.extend(self.switches.iter_mut().map(|switch| &mut switch.guard));
+        for switch in &mut self.switches {
+            roots.push(&mut switch.guard);
+            roots.extend(switch.clock.iter_mut().flat_map(|clock| [&mut clock.period, &mut clock.first]));
+        }
         roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
         for reaction in &mut self.reactions {
             roots.extend(reaction.slip.roots());

@@ -51,7 +51,13 @@ impl Signals<'_> {
         let (zero, one, effort) = (pool.zero(), pool.one(), pool.symbol(multiplier));
         let guard = pool.select(number, beyond, effort);
         let switched = Switched { effort: pool.select(number, zero, effort), acts: pool.select(number, zero, one) };
-        self.switches.push(Switch { element: name.clone(), condition: CLEAR.to_owned(), guard, remembers: true });
+        self.switches.push(Switch {
+            element: name.clone(),
+            condition: CLEAR.to_owned(),
+            guard,
+            remembers: true,
+            clock: None,
+        });
         let unit = graph.bond(bond).flow_unit();
         let (flow, gap) = (flow.0[0], Some(beyond));
         let slip = Slip { joint: name, direction: String::new(), unit, flow, kept: None, gap, mobility: None };

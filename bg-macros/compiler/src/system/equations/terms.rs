@@ -2,11 +2,12 @@
 //!
 //! In: [`Term`]. Out: [`Value`]. A comparison becomes a switch with a real-valued guard.
 
-use super::Switch;
 use super::signals::Signals;
+use super::{Clock, Switch};
 use crate::expr::{Function, Id, Symbol};
 use crate::graph::{
-    Allowed, BinaryOperator, Builtin, Comparison, ElementKind, NodeId, NodeKind, Reference, Storage, Term, TermKind,
+    self, Allowed, BinaryOperator, Builtin, Comparison, ElementKind, NodeId, NodeKind, Reference, Storage, Term,
+    TermKind,
 };
 use crate::system::Value;
 
@@ -55,6 +56,11 @@ impl Signals<'_> {
                 let then = self.evaluate(then, variable);
                 let otherwise = self.evaluate(otherwise, variable);
                 self.choose((*comparison, condition), (left, right), &then, &otherwise)
+            }
+            TermKind::AtInstant(clock, parts) => {
+                let switch = self.clock(*clock);
+                let [now, held] = [&parts[0], &parts[1]].map(|part| self.evaluate(part, variable).0[0]);
+                Value::scalar(self.pool.select(switch, now, held))
             }
             TermKind::Guess(index) => Value::scalar(self.numbered(*index, Symbol::Unknown)),
             TermKind::Integral(index) => Value::scalar(self.state_symbol(self.first_integral + index)),
@@ -202,13 +208,27 @@ impl Signals<'_> {
             (known, true)
         } else {
             let (element, condition) = (self.owner.clone(), condition.to_owned());
-            self.switches.push(Switch { element, condition, guard, remembers: false });
+            self.switches.push(Switch { element, condition, guard, remembers: false, clock: None });
             (self.switches.len() - 1, false)
         };
         let (negative, positive) = if swapped { (otherwise, then) } else { (then, otherwise) };
         let switch = u32::try_from(switch).expect("fewer than 2^32 switches");
         let pairs = negative.0.iter().zip(&positive.0);
         Value(pairs.map(|(&negative, &positive)| self.pool.select(switch, negative, positive)).collect())
+    }
+
+    /// The switch of a clock; clocks with the same instants share one.
+    fn clock(&mut self, clock: usize) -> u32 {
+        let graph::Clock { text, period, first } = &self.graph.clocks[clock];
+        let [period, first] = [period, first].map(|index| self.named_expression(*index).0[0]);
+        let clock = Some(Clock { period, first });
+        let known = self.switches.iter().position(|switch| switch.clock == clock);
+        let switch = known.unwrap_or_else(|| {
+            let (element, condition, guard) = (self.owner.clone(), text.clone(), self.pool.number(1.0));
+            self.switches.push(Switch { element, condition, guard, remembers: false, clock });
+            self.switches.len() - 1
+        });
+        u32::try_from(switch).expect("fewer than 2^32 switches")
     }
 
     fn call(&mut self, builtin: Builtin, arguments: &[Value]) -> Value {

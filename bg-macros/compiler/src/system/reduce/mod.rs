@@ -233,8 +233,8 @@ fn settle_switches(equations: &mut StateEquations) {
         .iter()
         .map(|switch| match equations.pool.as_number(switch.guard) {
             Some(value) if value < 0.0 => Branch::Negative,
-            Some(_) => Branch::Positive,
-            None => {
+            Some(_) if switch.clock.is_none() => Branch::Positive,
+            _ => {
                 kept += 1;
                 Branch::Kept(kept - 1)
             }

@@ -7,7 +7,7 @@
 //! C_p - (w / v) g_p. Derivatives of guards and impacts are numbers with slopes along each state and each parameter:
 //! events are few.
 
-use super::super::jump::{guards, leads_on, passed, struck};
+use super::super::jump::{guards, instant, leads_on, passed, struck};
 use super::back::{add, dot};
 use super::lifted::Lifted;
 use crate::model::dynamics::Machine;
@@ -25,7 +25,8 @@ pub(super) fn back_over(lifted: &mut Lifted, event: &Switching, gained: f64, wei
         return Some(());
     }
     let given: Vec<Gradient> = before.x.iter().copied().map(Gradient::from_f64).collect();
-    let (guard, speed) = passed(lifted.plain(), event)?;
+    let is_of_clock = instant(lifted.plain(), event).is_some();
+    let passed = if is_of_clock { None } else { Some(passed(lifted.plain(), event)?) };
     let mut by_instant = gained - dot(weights, after.rate.as_slice());
     if leads_on {
         let after = weights.to_vec();
@@ -39,6 +40,11 @@ pub(super) fn back_over(lifted: &mut Lifted, event: &Switching, gained: f64, wei
         weights.copy_from_slice(&lifted.by_states(before.x.as_slice(), |plain, x| weighted(plain, t, x)));
     }
     by_instant += dot(weights, before.rate.as_slice());
+    let Some((guard, speed)) = passed else {
+        let slopes = |system: &dyn Machine<Gradient>| instant(system, event).map_or([0.0; WIDTH], |at| at.slopes());
+        lifted.add_by_parameters(by_instant, slopes);
+        return by_instant.is_finite().then_some(());
+    };
     let later = -by_instant / speed;
     let slopes = |system: &dyn Machine<Gradient>, x: &[Gradient]| guards(system, event, 0.0, x)[guard].slopes();
     let by_guard = lifted.by_states(before.x.as_slice(), slopes);

@@ -184,14 +184,22 @@ impl Backwards<'_> {
             let first = kept * stride;
             let starts = self.again(first..steps.len().min(first + stride), state)?;
             for (number, x) in starts.iter().enumerate().rev().map(|(k, x)| (first + k, x)) {
-                while let Some((happened, before)) = last_after(events, number, |happened| happened.steps) {
-                    self.over(happened)?;
-                    events = before;
-                }
                 let mut inside = vec![0.0; x.len()];
-                while let Some((sample, before)) = last_after(samples, number, |sample| sample.steps) {
-                    self.sampled(sample, number, x, &mut inside)?;
-                    samples = before;
+                loop {
+                    let sample = last_after(samples, number, |sample| sample.steps);
+                    let happened = last_after(events, number, |happened| happened.steps);
+                    // At the instants of clocks samples come after the event.
+                    if let Some((happened, before)) =
+                        happened.filter(|_| sample.is_none_or(|(of, _)| of.events < events.len()))
+                    {
+                        self.over(happened)?;
+                        events = before;
+                    } else if let Some((sample, before)) = sample {
+                        self.sampled(sample, number, x, &mut inside)?;
+                        samples = before;
+                    } else {
+                        break;
+                    }
                 }
                 self.back_along(number, x)?;
                 add(&mut self.weights, &inside);

@@ -17,6 +17,8 @@ type Samples<'a> = Box<dyn FnMut(f64, &[f64], &[bool]) -> Option<Vec<f64>> + 'a>
 pub(super) struct Sample {
     /// The number of steps before its time, the one that it is in among them.
     pub steps: usize,
+    /// The number of events before it.
+    pub events: usize,
     pub t: f64,
     pub x: Vec<f64>,
     /// The branches, by their number.
@@ -92,7 +94,8 @@ impl Observer for Record<'_> {
     fn sample(&mut self, t: f64, x: &[f64], negative: &[bool]) {
         if let Some(weights) = (self.samples_of)(t, x, negative) {
             let branches = self.number(negative);
-            self.samples.push(Sample { steps: self.steps.len(), t, x: x.to_vec(), branches, weights });
+            let (steps, events) = (self.steps.len(), self.events.len());
+            self.samples.push(Sample { steps, events, t, x: x.to_vec(), branches, weights });
         }
     }
 
