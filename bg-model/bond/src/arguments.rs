@@ -99,6 +99,8 @@ pub struct Call {
     pub is_interpreted: bool,
     /// The most statements of a graph, where that is said.
     pub most: Option<usize>,
+    /// Tables with the files that their points are from.
+    pub tables: Vec<(String, PathBuf)>,
     /// The words of the command.
     pub command: Vec<String>,
     pub options: Vec<OsString>,
@@ -135,6 +137,9 @@ const GOLDEN: [(&str, &str); 2] =
 /// A file and its options, for clap.
 const WORDS: &str = "words";
 
+/// The option for other points of a table.
+const TABLE: &str = "--table";
+
 /// The option for larger graphs.
 const LIMIT: &str = "--limit-statements";
 
@@ -144,7 +149,8 @@ names in the file.
 FILE is a text with graphs (`.bond`), a Rust file with calls of `bond_graph!` (`.rs`), a robot (`.urdf`, or `.xml` and
 `.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which. A graph has at most 20000 statements, with
 its repetitions and parts written out; `--limit-statements NUMBER` allows others. Models run in machine code where that
-pays, with `--interpreted` without it: slower, and to the bit the same.
+pays, with `--interpreted` without it: slower, and to the bit the same. `--table NAME=FILE.csv` gives a table of the file
+other points, any number of them, in every command.
 
 Exit code: 0 done, 1 the run or an output failed, 2 the input cannot be used.";
 
@@ -268,10 +274,25 @@ fn call(command: &[&str], mut words: impl Iterator<Item = OsString>) -> Result<A
         Some(most) => Some(most.parse().map_err(|_| unusable(format!("{LIMIT} {most}: not a number of statements")))?),
         None => None,
     };
+    let mut tables = Vec::new();
+    while let Some(given) = taken(&mut options, TABLE)? {
+        let (name, file) =
+            given.split_once('=').filter(|(name, file)| !(name.is_empty() || file.is_empty())).ok_or_else(|| {
+                unusable(format!("{TABLE} {given}: write {TABLE} NAME=FILE.csv, the table and the file of its points"))
+            })?;
+        tables.push((name.trim().to_owned(), file.trim().into()));
+    }
+    // As they stand on the command line.
+    tables.reverse();
     let all = options.len();
     options.retain(|word| word != "--interpreted");
     let command = command.iter().map(|&word| word.to_owned()).collect();
-    Ok(Asked::Program(Call { file, graph, is_interpreted: options.len() < all, most, command, options }))
+    Ok(Asked::Program(Call { file, graph, is_interpreted: options.len() < all, most, tables, command, options }))
+}
+
+/// The summary of the run that is to be made again, where one is.
+pub fn again(options: &[OsString]) -> Option<PathBuf> {
+    taken(&mut options.to_vec(), "--again").ok().flatten().map(PathBuf::from)
 }
 
 /// The commands that ask for one scene.
@@ -318,6 +339,7 @@ mod tests {
             graph: graph.map(str::to_owned),
             is_interpreted: false,
             most: None,
+            tables: Vec::new(),
             command: command.iter().map(|&word| word.to_owned()).collect(),
             options: options.iter().map(Into::into).collect(),
         }))
@@ -351,6 +373,15 @@ mod tests {
     }
 
     #[test]
+    fn tables_have_files() {
+        let Ok(Asked::Program(call)) = of("run saw.bond --table a=b.csv --t-end 2 --table=c=d.csv") else {
+            panic!("a command")
+        };
+        assert_eq!(call.tables, [("a".to_owned(), "b.csv".into()), ("c".to_owned(), "d.csv".into())]);
+        assert_eq!(call.options, ["--t-end", "2"]);
+    }
+
+    #[test]
     fn what_is_missing_is_said() {
         for (line, said) in [
             ("run", "required arguments were not provided"),
@@ -362,6 +393,7 @@ mod tests {
             ("run --t-end 2 a.bond", "unexpected argument '--t-end'"),
             ("run a.bond --limit-statements many", "--limit-statements many: not a number of statements"),
             ("run a.bond --graph", "--graph: give it a value"),
+            ("run a.bond --table curve", "--table curve: write --table NAME=FILE.csv"),
             ("watch a.bond --set b=1 --port 1e9", "--port 1e9: not the number of a port"),
             ("run --help", "Usage: bond run FILE [OPTIONS]"),
             ("", "Usage: bond"),

@@ -22,7 +22,7 @@ use bg_workbench::command::{config, manual};
 use bg_workbench::files::commit::commit_of;
 use bg_workbench::files::{FileError, console, crc32};
 use bond_graph::maker::{self, Source};
-use bond_graph::{faults, file, serve};
+use bond_graph::{faults, file, serve, tables};
 use served::Served;
 
 fn main() -> ExitCode {
@@ -71,10 +71,18 @@ fn serve_page(folder: Option<PathBuf>, served: &Served) -> Result<ExitCode, Stri
 }
 
 /// Hands a command of the workbench to the program of a graph.
-fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -> ExitCode {
+fn program(Call { file, graph, is_interpreted, most, tables, command, options }: Call) -> ExitCode {
     let read = match file::read(&file) {
         Ok(read) => read,
         Err(fault) => return refused(fault),
+    };
+    let tables = match tables::given(&tables, arguments::again(&options).as_deref()) {
+        Ok(tables) => tables,
+        Err(fault) => return refused(fault),
+    };
+    let read = match tables::put(read, &tables) {
+        Ok(read) => read,
+        Err(fault) => return refused(format!("--table: {fault}")),
     };
     let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into)).chain(options);
     let words = match config::words(words) {
@@ -97,7 +105,7 @@ fn program(Call { file, graph, is_interpreted, most, command, options }: Call) -
             let crc32 = crc32(read.text.as_bytes());
             let loaded = loaded.of_source(Source { text: read, gather: file::bundle, most });
             let loaded = if is_interpreted { loaded.by(BackEnd::Interpreter) } else { loaded };
-            let program = Program::with(loaded).on_file("bond", &file.display().to_string());
+            let program = Program::with(loaded).on_file("bond", &file.display().to_string()).tables(tables);
             program.version(&arguments::version()).of_text(&name, &crc32).commit(commit.as_deref()).obey(&words)
         }
         Err(fault) => refused(format!("{}: {fault}", file.display())),

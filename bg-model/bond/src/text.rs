@@ -4,8 +4,9 @@
 
 use std::path::PathBuf;
 
-use bg_loaded::{Counted, Fault, Graph, load_wanted};
+use bg_loaded::{Counted, Fault, Graph, load_wanted, with_points};
 use bg_workbench::scenes::in_small_letters;
+use thiserror::Error;
 
 /// Brackets in brackets: a text has some ten.
 pub const DEEPEST: usize = 200;
@@ -19,7 +20,78 @@ pub struct Text {
     pub text: String,
 }
 
+/// A table of a text with other points: those of a file, or rows of numbers in the units of the table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Points {
+    /// A file as `table .. = "FILE"` takes it: two columns, or with a row of second arguments.
+    File(PathBuf),
+    /// Rows of the same length: pairs, or a row of the second arguments and rows of a first one with its values.
+    Rows(Vec<Vec<f64>>),
+}
+
+/// Other points that a text cannot have.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum NoTable {
+    /// There is no such table.
+    #[error("there is no table `{name}`{}", listed(known))]
+    Unknown {
+        /// The name.
+        name: String,
+        /// The names of those that there are in the text itself.
+        known: Vec<String>,
+    },
+    /// A number that is none.
+    #[error("the table `{name}` has {value} in row {row}; give numbers that are finite")]
+    NotFinite {
+        /// The name.
+        name: String,
+        /// Its row, from 1 on.
+        row: usize,
+        /// The value.
+        value: String,
+    },
+}
+
+fn listed(known: &[String]) -> String {
+    let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+    if names.is_empty() {
+        "; the text has none of its own".to_owned()
+    } else {
+        format!("; there are {}", names.join(", "))
+    }
+}
+
+impl Points {
+    /// As they stand in a text.
+    fn written(&self, name: &str) -> Result<String, NoTable> {
+        let rows = match self {
+            // The path may have any letter.
+            Self::File(path) => return Ok(format!("{:?}", path.display().to_string())),
+            Self::Rows(rows) => rows,
+        };
+        let not_finite = |(row, values): (usize, &Vec<f64>)| {
+            let value = values.iter().find(|value| !value.is_finite())?;
+            Some(NoTable::NotFinite { name: name.to_owned(), row: row + 1, value: value.to_string() })
+        };
+        match rows.iter().enumerate().find_map(not_finite) {
+            Some(fault) => Err(fault),
+            None => Ok(format!("{rows:?}")),
+        }
+    }
+}
+
 impl Text {
+    /// The same where the table of this name has other points, as many as it may be. A table of a file that the text uses
+    /// stays as it is.
+    ///
+    /// # Errors
+    /// [`NoTable`].
+    pub fn with_table(self, name: &str, points: &Points) -> Result<Self, NoTable> {
+        let written = points.written(name)?;
+        let unknown = |known| NoTable::Unknown { name: name.to_owned(), known };
+        Ok(Self { text: with_points(&self.text, name, &written).map_err(unknown)?, ..self })
+    }
+
     /// Whether brackets are in brackets more often than a reader follows.
     #[must_use]
     pub fn is_deep(&self) -> bool {

@@ -16,6 +16,8 @@ mod identify;
 mod optimize;
 #[path = "program/plot.rs"]
 mod plot;
+#[path = "program/tables.rs"]
+mod tables;
 #[path = "program/told.rs"]
 mod told_of;
 

@@ -15,6 +15,7 @@ mod swept;
 mod text;
 
 pub use bg_compiler::source::syntax::files::{Open, Opened};
+pub use bg_compiler::source::syntax::points::with_points;
 pub use blueprint::Blueprint;
 pub use bundle::{Bundle, Chosen};
 pub use code::BackEnd;

@@ -65,6 +65,7 @@
 //! | [`gradient`] | how one number of a run depends on all parameters |
 //! | [`identify`] | which parameters come nearest to what was measured |
 //! | [`optimize`] | which parameters make a number of a run least |
+//! | [`recipe`] | what a run was made with, so that it can be made again |
 //! | [`summary`] | what a run results in, in numbers |
 //! | [`page`] | all of it on one page that needs nothing else, in motion where there is a machine |
 //! | [`live`] | the same with the model inside, so that the page can run it again |
@@ -96,9 +97,9 @@ pub use ask::{compiled, inputs, machine, maker, parameters, request, scenes};
 pub use bg_analysis::linear;
 #[cfg(not(target_arch = "wasm32"))]
 pub use command::calls;
-pub use run::summary;
 #[cfg(not(target_arch = "wasm32"))]
 pub use run::{compare, samples};
+pub use run::{recipe, summary};
 pub use show::{extras, figures, markup, page, picture};
 #[cfg(not(target_arch = "wasm32"))]
 pub use show::{output, shown, tables};

@@ -17,8 +17,8 @@
 //! # What a linear model is about
 //!
 //! Small changes that the mechanism can make. Of the nine entries of an orientation three rotations stay, of
-//! displacements that the poses determine none, of momenta those that rigid joints allow; what memories keep and samples
-//! hold stays as it is; integrals that only outputs
+//! displacements that the poses determine none, of momenta those that rigid joints allow; what memories keep and
+//! samples hold stays as it is; integrals that only outputs
 //! ask for change nothing and are left out ([`LeftOut`] says what is). So every eigenvalue 0 is real: a free motion,
 //! such as the turning of a crank that nothing drives.
 //!

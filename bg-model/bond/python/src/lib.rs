@@ -10,6 +10,7 @@ use bg_python::model::{Model, Picture, RunFailed};
 use bg_python::table::Table;
 use bg_workbench::Program;
 use bond_graph::file::{self, Text, Wanted};
+use bond_graph::text::Points;
 use bond_graph::{faults, maker};
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
@@ -24,35 +25,64 @@ pyo3::create_exception!(
 
 /// The model of a file: a text with graphs, a Rust file with calls of `bond_graph!`, a robot in URDF or MJCF.
 #[pyfunction]
-#[pyo3(signature = (path, *, graph=None, limit_statements=None))]
-fn load(py: Python<'_>, path: PathBuf, graph: Option<&str>, limit_statements: Option<usize>) -> PyResult<Model> {
+#[pyo3(signature = (path, *, graph=None, limit_statements=None, tables=None))]
+fn load(
+    py: Python<'_>,
+    path: PathBuf,
+    graph: Option<&str>,
+    limit_statements: Option<usize>,
+    tables: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Model> {
     let text = py.detach(|| file::read(&path)).map_err(|fault| match fault {
         file::FileFault::Unreadable { .. } => PyOSError::new_err(fault.to_string()),
         fault => PyValueError::new_err(fault.to_string()),
     })?;
-    model(py, &text, graph, limit_statements)
+    model(py, with_tables(text, tables)?, graph, limit_statements)
 }
 
 /// The model of a text. Files that it uses are sought in `folder`.
 #[pyfunction]
-#[pyo3(signature = (text, *, graph=None, folder=PathBuf::new(), limit_statements=None))]
+#[pyo3(signature = (text, *, graph=None, folder=PathBuf::new(), limit_statements=None, tables=None))]
 fn compile(
     py: Python<'_>,
     text: String,
     graph: Option<&str>,
     folder: PathBuf,
     limit_statements: Option<usize>,
+    tables: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Model> {
     let text = Text { path: folder.join("<text>"), text };
     if text.is_deep() {
         return Err(PyValueError::new_err("brackets in brackets, deeper than any mechanism has them"));
     }
-    model(py, &text, graph, limit_statements)
+    model(py, with_tables(text, tables)?, graph, limit_statements)
 }
 
-fn model(py: Python<'_>, text: &Text, graph: Option<&str>, most: Option<usize>) -> PyResult<Model> {
+/// The text where tables have other points: a file's, or rows of numbers in the units of the table.
+fn with_tables(text: Text, tables: Option<&Bound<'_, PyDict>>) -> PyResult<Text> {
+    let Some(tables) = tables else { return Ok(text) };
+    tables.iter().try_fold(text, |text, (name, given)| {
+        let name: String = name.extract()?;
+        text.with_table(&name, &points(&name, &given)?).map_err(|fault| PyValueError::new_err(fault.to_string()))
+    })
+}
+
+fn points(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Points> {
+    if let Ok(path) = given.extract::<PathBuf>() {
+        return Ok(Points::File(path.canonicalize()?));
+    }
+    let row = |row: Bound<'_, PyAny>| -> PyResult<Vec<f64>> {
+        row.try_iter()?.map(|value| value?.extract::<f64>()).collect()
+    };
+    let rows = given.try_iter().and_then(|rows| rows.map(|of| row(of?)).collect::<PyResult<Vec<_>>>());
+    rows.map(Points::Rows).map_err(|_| {
+        PyValueError::new_err(format!("the table `{name}`: give the path of a CSV file, or rows such as [[0, 12], [100, 15]]"))
+    })
+}
+
+fn model(py: Python<'_>, text: Text, graph: Option<&str>, most: Option<usize>) -> PyResult<Model> {
     let wanted = Wanted { most, ..Wanted::default() };
-    let graphs = py.detach(|| file::graphs(text, &wanted)).or_else(|faults| Err(fault_error(py, text, &faults)?))?;
+    let graphs = py.detach(|| file::graphs(&text, &wanted)).or_else(|faults| Err(fault_error(py, &text, &faults)?))?;
     let loaded = maker::Loaded::of(graphs, graph).map_err(PyValueError::new_err)?;
     Ok(Model::new(move || Program::with(loaded.clone())))
 }

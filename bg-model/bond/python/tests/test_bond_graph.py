@@ -127,3 +127,25 @@ def test_an_optimum_is_where_theory_has_it():
     assert math.isclose(found["trials"]["stiffness"][0], 50) and found["trials"].units["stiffness"] == "N/m"
     with pytest.raises(ValueError, match="there is no output, parameter or measure `w`"):
         bg.compile(SWING).optimize(minimize="max w", by=["stiffness"])
+
+
+FAN = """
+graph Fan {
+    table curve: rpm -> N*m = [[0, 2], [1000, 2]], held;
+    1 shaft: rotation; I wheel = 0.1; MSe motor = curve(shaft.flow); motor -> shaft -> wheel;
+    observe { speed: rad/s = shaft.flow }
+}
+"""
+
+
+def test_tables_get_other_points(tmp_path: pathlib.Path):
+    speed = lambda **given: bg.compile(FAN, **given).run(t_end=1, step=1, rtol=1e-10)["speed"][-1]
+    assert math.isclose(speed(), 20, rel_tol=1e-9)
+    assert math.isclose(speed(tables={"curve": np.array([[0, 3], [500, 3], [1000, 3]])}), 30, rel_tol=1e-9)
+    file = tmp_path / "new.csv"
+    file.write_text("speed [rad/s],torque [kN*m]\n0,0.004\n100,0.004\n")
+    assert math.isclose(speed(tables={"curve": file}), 40, rel_tol=1e-9)
+    with pytest.raises(ValueError, match="there is no table `curv`; there are `curve`"):
+        speed(tables={"curv": [[0, 1], [1, 1]]})
+    with pytest.raises(ValueError, match="give the path of a CSV file, or rows"):
+        speed(tables={"curve": 3})

@@ -99,6 +99,7 @@ impl<'a> Asked<'a> {
             parameters: recipe::quantities(&chosen.values),
             inputs,
             input_files: input_files(&inputs::named(&settings, infos)),
+            tables: program.tables.clone(),
             integration,
             begin,
         };

@@ -9,6 +9,7 @@ use crate::ask::maker::Maker;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::ask::scenes::Scene;
 use crate::ask::scenes::{Models, in_small_letters};
+use crate::run::recipe::TableFile;
 use crate::show::extras::{Extras, Plain};
 use case::{Case, CaseSolution};
 
@@ -29,6 +30,8 @@ pub struct Program {
     /// none.
     pub(crate) measured: Vec<String>,
     pub(crate) extras: Box<dyn Extras>,
+    /// The tables of its text that have the points of other files.
+    pub(crate) tables: Vec<TableFile>,
 }
 
 /// What a program says of itself.
@@ -74,6 +77,7 @@ impl Program {
             models,
             measured: Vec::new(),
             extras: Box::new(Plain),
+            tables: Vec::new(),
         }
     }
 
@@ -118,6 +122,13 @@ impl Program {
     #[must_use]
     pub fn of_text(mut self, name: &str, crc32: &str) -> Self {
         self.texts.text = Some((name.to_owned(), crc32.to_owned()));
+        self
+    }
+
+    /// The same where these tables of its text have the points of other files, as summaries of runs say.
+    #[must_use]
+    pub fn tables(mut self, tables: Vec<TableFile>) -> Self {
+        self.tables = tables;
         self
     }
 

@@ -30,6 +30,18 @@ pub struct ModelFile {
     pub crc32: String,
 }
 
+/// A table with the file that its points were from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TableFile {
+    /// The name of the table.
+    pub table: String,
+    /// The file.
+    pub file: std::path::PathBuf,
+    /// Its CRC-32.
+    pub crc32: String,
+}
+
 /// What a run was made with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -57,6 +69,9 @@ pub struct Recipe {
     pub inputs: Vec<String>,
     /// The CRC-32 of the files that inputs are from, by the inputs' names.
     pub input_files: BTreeMap<String, String>,
+    /// The tables of a text that had the points of other files.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tables: Vec<TableFile>,
     /// How it was integrated.
     pub integration: Integration,
     /// Where it began.
@@ -87,7 +102,7 @@ mod read {
     use bg_model::description::{Description, ParameterInfo};
     use thiserror::Error;
 
-    use super::{Quantity, Recipe};
+    use super::{Quantity, Recipe, TableFile};
     use crate::ask::inputs::Named;
     use crate::ask::parameters::Values;
     use crate::files::crc32;
@@ -121,6 +136,19 @@ mod read {
         let source =
             |input: &Named| Some((input.name.to_owned(), input.table.as_ref()?.source.as_ref()?.crc32.clone()));
         inputs.iter().filter_map(source).collect()
+    }
+
+    impl TableFile {
+        /// A table with the points of the file at `path`.
+        ///
+        /// # Errors
+        /// The file cannot be read.
+        pub fn at(table: &str, path: &Path) -> std::io::Result<Self> {
+            // As it is found from any folder.
+            let file = path.canonicalize()?;
+            let crc32 = crc32(&std::fs::read(&file)?);
+            Ok(Self { table: table.to_owned(), file, crc32 })
+        }
     }
 
     /// The recipe in the `summary.json` at `path`.

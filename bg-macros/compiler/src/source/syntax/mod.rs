@@ -23,7 +23,7 @@ pub mod files;
 mod friction;
 mod mechanism;
 mod part;
-mod points;
+pub mod points;
 mod scene;
 mod statement;
 mod token;

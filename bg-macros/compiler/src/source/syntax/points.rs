@@ -5,6 +5,8 @@
 //! there. Of a table of two arguments the head is a word, with the unit of the first column in brackets, and the second
 //! arguments.
 
+use std::ops::Range;
+
 use proc_macro2::{Delimiter, Group, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 
 /// Puts points in the places of the names of files after `table .. =`. What `read` says of a file without points stands
@@ -33,6 +35,50 @@ pub(super) fn replaced(tokens: TokenStream, read: &mut dyn FnMut(&str, Span) -> 
         token
     };
     tokens.into_iter().map(token).collect()
+}
+
+/// A text in which a table of this name has other points, as they would be written there: `"motor.csv"`, or
+/// `[[0, 12]]`. Lines stay where they are. Of tables in files that the text uses nothing is known.
+///
+/// # Errors
+/// There is no such table; the names of those that there are.
+pub fn with_points(text: &str, name: &str, points: &str) -> Result<String, Vec<String>> {
+    let Ok(tokens) = text.parse::<TokenStream>() else { return Ok(text.to_owned()) };
+    let mut found: Vec<(String, Range<usize>)> = Vec::new();
+    values(tokens, &mut found);
+    if found.iter().all(|(known, _)| known != name) {
+        let mut known: Vec<String> = found.into_iter().map(|(known, _)| known).collect();
+        known.dedup();
+        return Err(known);
+    }
+    let mut text = text.to_owned();
+    for (_, place) in found.into_iter().rev().filter(|(known, _)| known == name) {
+        let lines = "\n".repeat(text[place.clone()].matches('\n').count());
+        text.replace_range(place, &format!("{points}{lines}"));
+    }
+    Ok(text)
+}
+
+/// The name of each table with the place of its points, in bytes.
+fn values(tokens: TokenStream, found: &mut Vec<(String, Range<usize>)>) {
+    let (mut name, mut is_table, mut is_value) = (None, false, false);
+    for token in tokens {
+        match &token {
+            TokenTree::Ident(word) if is_table && name.is_none() => name = Some(word.to_string()),
+            TokenTree::Ident(word) if word == "table" => (is_table, is_value, name) = (true, false, None),
+            TokenTree::Punct(mark) if mark.as_char() == ';' => is_table = false,
+            TokenTree::Punct(mark) if mark.as_char() == '=' && is_table => is_value = true,
+            TokenTree::Group(group) if group.delimiter() == Delimiter::Brace => {
+                is_table = false;
+                values(group.stream(), found);
+            }
+            TokenTree::Group(_) | TokenTree::Literal(_) if is_table && is_value => {
+                found.extend(name.take().map(|name| (name, token.span().byte_range())));
+                is_table = false;
+            }
+            _ => {}
+        }
+    }
 }
 
 /// The points of a file as tokens, `[0 rpm, 12 N*m], ..`, all at one place.
@@ -140,6 +186,18 @@ mod tests {
         let text = "speed by voltage [rpm], 12, 24\n0, 1, 2\n-500, 3, -4.5\n";
         assert_eq!(read(text), Ok("[12.0,24.0,],[0.0rpm,1.0,2.0,],[-500.0rpm,3.0,-4.5,],".to_owned()));
         assert_eq!(read("n, 12, 24\n0, 1, two\n").unwrap_err(), "line 2 is no row of numbers");
+    }
+
+    #[test]
+    fn a_table_gets_other_points_and_lines_stay() {
+        let text = "graph G {\n  table a: m -> N = [[0, 1],\n [1, 2]], spline;\n  table b: m, V -> N = \"b.csv\";\n}";
+        let with = |name, points| with_points(text, name, points);
+        assert_eq!(
+            with("a", "\"new.csv\"").as_deref(),
+            Ok("graph G {\n  table a: m -> N = \"new.csv\"\n, spline;\n  table b: m, V -> N = \"b.csv\";\n}")
+        );
+        assert_eq!(with("b", "[[0, 3]]"), Ok(text.replace("\"b.csv\"", "[[0, 3]]")));
+        assert_eq!(with("c", ""), Err(vec!["a".to_owned(), "b".to_owned()]));
     }
 
     #[test]

@@ -150,12 +150,24 @@ class Model:
     def read_sweep(self, folder: str | PathLike[str], *, trajectories: bool = False) -> Table:
         """The rows of a sweep's folder: one for each run, or with ``trajectories`` for each sample."""
 
-def load(path: str | PathLike[str], *, graph: str | None = None, limit_statements: int | None = None) -> Model:
+def load(
+    path: str | PathLike[str],
+    *,
+    graph: str | None = None,
+    limit_statements: int | None = None,
+    tables: Mapping[str, str | PathLike[str] | Sequence[Sequence[float]] | npt.NDArray[np.float64]] | None = None,
+) -> Model:
     """The model of a file: a text with graphs, a Rust file with calls of ``bond_graph!``, a robot in URDF or MJCF.
 
-    ``limit_statements`` is the most that a graph may have with its repetitions and parts written out, 20000 unless said."""
+    ``limit_statements`` is the most that a graph may have with its repetitions and parts written out, 20000 unless said.
+    ``tables`` gives tables of the text other points: rows of numbers in the units of the table, or the path of a CSV file."""
 
 def compile(
-    text: str, *, graph: str | None = None, folder: str | PathLike[str] = "", limit_statements: int | None = None
+    text: str,
+    *,
+    graph: str | None = None,
+    folder: str | PathLike[str] = "",
+    limit_statements: int | None = None,
+    tables: Mapping[str, str | PathLike[str] | Sequence[Sequence[float]] | npt.NDArray[np.float64]] | None = None,
 ) -> Model:
     """The model of a text. Files that it uses are sought in ``folder``, the working folder unless said."""
