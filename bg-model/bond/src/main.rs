@@ -76,6 +76,7 @@ fn program(Call { file, graph, is_interpreted, most, tables, command, options }:
         Ok(read) => read,
         Err(fault) => return refused(fault),
     };
+    let crc32 = crc32(read.text.as_bytes());
     let tables = match tables::given(&tables, arguments::again(&options).as_deref()) {
         Ok(tables) => tables,
         Err(fault) => return refused(fault),
@@ -102,7 +103,6 @@ fn program(Call { file, graph, is_interpreted, most, tables, command, options }:
             let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty());
             let commit = commit_of(folder.unwrap_or_else(|| Path::new(".")));
-            let crc32 = crc32(read.text.as_bytes());
             let loaded = loaded.of_source(Source { text: read, gather: file::bundle, most });
             let loaded = if is_interpreted { loaded.by(BackEnd::Interpreter) } else { loaded };
             let program = Program::with(loaded).on_file("bond", &file.display().to_string()).tables(tables);
