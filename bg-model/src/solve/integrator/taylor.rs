@@ -27,6 +27,8 @@ const LINE: usize = 8;
 pub struct Taylor {
     /// The order that is asked for; else it follows from the tolerance.
     asked: Option<usize>,
+    /// The part of an error that counts.
+    counted: f64,
     /// The coefficients from the state at the start on, order by order, in units of `unit`.
     series: Vec<f64>,
     /// The order of the series; 0 where there is none yet.
@@ -54,6 +56,7 @@ impl Taylor {
     pub fn new() -> Self {
         Self {
             asked: None,
+            counted: 1.0,
             series: Vec::new(),
             order: 0,
             rows: Vec::new(),
@@ -71,6 +74,11 @@ impl Taylor {
     #[must_use]
     pub fn of_order(order: usize) -> Self {
         Self { asked: Some(order.clamp(2, HIGHEST)), ..Self::new() }
+    }
+
+    /// The method that errs by `1 / counted` times what the tolerances allow.
+    pub(super) fn with_errors_counted(counted: f64) -> Self {
+        Self { counted, ..Self::new() }
     }
 
     /// Expands the flow from `start` to the order that `relative` calls for, with the unit of time `h` (s). Without a
@@ -178,12 +186,12 @@ impl Vectorised for Taylor {
     #[inline(always)]
     fn attempt_inlined(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
         if !self.is_current {
-            self.expand(flow, start, h, scale.relative);
+            self.expand(flow, start, h, scale.relative / self.counted);
         }
         if self.is_by_other {
             return f64::NAN;
         }
-        let (theta, n, order) = (h / self.unit, flow.states(), self.order);
+        let (theta, n, order, counted) = (h / self.unit, flow.states(), self.order, self.counted);
         let Self { series, room: [change, slope, weights, errors], sum, .. } = self;
         let (change, slope, weights, errors) = (&mut change[..n], &mut slope[..n], &mut weights[..n], &mut errors[..n]);
         for_each(n, &mut Sums { series, theta, change, slope });
@@ -191,7 +199,7 @@ impl Vectorised for Taylor {
             let from = start.x[i];
             let to = sum.add(i, from, change[i]);
             end[i] = to;
-            weights[i] = 1.0 / scale.allowed_between(i, from, to);
+            weights[i] = counted / scale.allowed_between(i, from, to);
         }
         // A coefficient that is no number leaves none at the end, so a step of numbers costs no more than this look.
         if !is_finite(end) && !is_finite(series) {
@@ -215,7 +223,7 @@ impl Vectorised for Taylor {
         for i in 0..n {
             rate[i] = ((unit * rate[i] - slope[i]) * weights[i]).abs();
         }
-        let defect = theta * largest(rate) / slack(scale.relative);
+        let defect = theta * largest(rate) / slack(scale.relative / counted);
         if defect > 1.0 { defect } else { norm }
     }
 }

@@ -1,5 +1,6 @@
 //! What a user can write that is no sentence of the language.
 
+use super::statement::OPERATOR;
 use crate::fault::{Explain, near_miss};
 
 /// More words than a help line can list to advantage.
@@ -296,6 +297,11 @@ fn likeliest(found: &str, expected: &str) -> String {
     let word = found.trim_matches('`');
     if let Some(near) = near_miss(word, quoted.filter(|candidate| candidate.len().min(word.len()) > 1)) {
         return format!("write `{near}`");
+    }
+    // A statement or an entry of a list that may have come to its end.
+    let ending = ["`,`", "`;`"].into_iter().find(|ending| expected.contains(ending));
+    if let Some(ending) = ending.filter(|_| expected.starts_with(OPERATOR)) {
+        return format!("write {OPERATOR}, or {ending} before {found}");
     }
     let mut end = expected.len();
     let mut is_quoted = false;

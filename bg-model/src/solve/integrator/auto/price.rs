@@ -11,7 +11,7 @@ use crate::model::capability::Operations;
 use crate::solve::integrator::Flow;
 
 /// The loosest relative tolerance at which the series is worth a trial: its lowest orders are dear for what they reach.
-const LOOSEST: f64 = 1e-4;
+const LOOSEST: f64 = 1e-3;
 
 /// The price of an accepted step beside its attempts, where joints hold motions: its end is projected, and what they
 /// hold is looked at.

@@ -48,6 +48,8 @@ pub struct Nystrom {
     polynomial: Polynomial<COEFFICIENTS>,
     /// The machine's vectors.
     arch: Arch,
+    /// The part of an error that counts.
+    counted: f64,
 }
 
 impl Nystrom {
@@ -55,7 +57,12 @@ impl Nystrom {
     #[must_use]
     pub fn new() -> Self {
         let (stages, ring, polynomial) = (Stages::new(0), Ring::new(0), Polynomial::new());
-        Self { stages, ring, polynomial, arch: Arch::new() }
+        Self { stages, ring, polynomial, arch: Arch::new(), counted: 1.0 }
+    }
+
+    /// The method that errs by `1 / counted` times what the tolerances allow.
+    pub(super) fn with_errors_counted(counted: f64) -> Self {
+        Self { counted, ..Self::new() }
     }
 }
 
@@ -95,7 +102,7 @@ impl Method for Nystrom {
         if reach > 1.0 {
             return reach;
         }
-        let norm = attempt_in(self.arch, self, flow, start, h, scale, end);
+        let norm = self.counted * attempt_in(self.arch, self, flow, start, h, scale, end);
         if norm < reach { reach } else { norm }
     }
 

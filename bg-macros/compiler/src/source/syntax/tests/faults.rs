@@ -82,7 +82,7 @@ fn unexpected_tokens_name_what_could_stand_there() {
         ("I L coil;", "2:5 BG0102 found `coil`, expected `=` | write `=` here"),
         ("I = 3;", "2:3 BG0102 found `=`, expected a name for the element | write a name for the element here"),
         ("I L = ;", "2:7 BG0102 found `;`, expected an expression | write an expression here"),
-        ("let a = 2 w;", "2:11 BG0102 found `w`, expected an operator or `;` | write an operator here"),
+        ("let a = 2 w;", "2:11 BG0102 found `w`, expected an operator or `;` | write an operator, or `;` before `w`"),
         (
             "let a = b[];",
             "2:11 BG0102 found the end of the brackets, expected a whole number | write a whole number here",
