@@ -188,6 +188,11 @@ mod tests {
             assert_eq!(branch.points.len(), 11);
             assert!(branch.points.iter().all(|(value, mode)| (mode.imaginary - first - way * value).abs() < 1e-12));
         }
+        // Where nothing says yet which way they go, their shapes do.
+        for branch in branches([4.9, 5.1].map(|value| (value, crossing(value)))) {
+            assert_eq!(branch.points.len(), 2);
+            assert_eq!(branch.points[0].1.shape, branch.points[1].1.shape);
+        }
     }
 
     #[test]
@@ -205,7 +210,7 @@ mod tests {
     #[test]
     fn a_crossing_is_found_to_rounding() {
         let found = branches((0..=10).map(|k| (f64::from(k), crossing(f64::from(k)))));
-        let excess = |value: f64, mode: &Mode| mode.imaginary - 4.0 * value;
+        let excess = |value: f64, mode: &Mode| mode.imaginary.powi(2) - (4.0 * value).powi(2);
         // 10 + x = 4 x and 20 - x = 4 x, the second at one of the points.
         for (branch, expected) in found.iter().zip([10.0 / 3.0, 4.0]) {
             let met = crossings(branch, excess, |value| Some(crossing(value)));
