@@ -232,7 +232,7 @@ const MORE: [(&str, &str); 71] = [
     ("BG0316", "every ▸1 m { sample a: 1 = 2; } 1 j: translation; I m = 2; MSe f = 1 N * a; f -> j -> m;"),
     (
         "BG0323",
-        "every 1 s ▸* j.flow / (1 m/s) { sample a: 1 = 2; } 1 j: translation; I m = 2; MSe f = 1 N * a; f -> j -> m;",
+        "every 1 s * ▸j.flow / (1 m/s) { sample a: 1 = 2; } 1 j: translation; I m = 2; MSe f = 1 N * a; f -> j -> m;",
     ),
     ("BG0339", "table ▸c: m -> N = [[0, 1]]; 1 j: translation; I m = 2; C k(q) = c(q); j -> m; j -> k;"),
     (
