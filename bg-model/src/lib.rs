@@ -109,7 +109,7 @@ mod solve;
 
 pub use model::{
     assembly, capability, clock, description, drawing, dynamics, holding, input, iteration, linear, mechanism,
-    parameters, requirement, scalar, series, standing, start, system,
+    parameters, requirement, sampled, scalar, series, standing, start, system,
 };
 #[cfg(feature = "std")]
 pub use solve::{extended, run, sensitivity};

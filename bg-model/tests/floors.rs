@@ -14,6 +14,7 @@ const FLOORS: [&[&str]; 17] = [
     &[
         "model::iteration",
         "model::input",
+        "model::clock",
         "model::linear",
         "model::series",
         "model::origin",
@@ -23,7 +24,7 @@ const FLOORS: [&[&str]; 17] = [
     &["model::capability"],
     &["model::system"],
     &["model::dynamics", "model::vectorised"],
-    &["model::reactions", "model::mechanism"],
+    &["model::reactions", "model::mechanism", "model::sampled"],
     &["model::standing", "model::start"],
     &["solve::statistics"],
     &["solve::integrator", "solve::finish"],

@@ -4,7 +4,8 @@
 
 use std::path::{Path, PathBuf};
 
-use bg_workbench::recipe::{AgainError, TableFile, read};
+use bg_workbench::recipe::{AgainError, read};
+use bg_workbench::table_file::TableFile;
 use thiserror::Error;
 
 use crate::text::{NoTable, Points, Text};

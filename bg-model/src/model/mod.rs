@@ -17,6 +17,7 @@ pub(crate) mod origin;
 pub mod parameters;
 pub(crate) mod reactions;
 pub mod requirement;
+pub mod sampled;
 pub mod scalar;
 pub mod series;
 pub mod standing;

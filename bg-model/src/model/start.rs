@@ -16,6 +16,7 @@ use crate::model::nearest::lifted;
 pub use crate::model::reactions::share;
 use crate::model::reactions::{self, fit};
 use crate::model::requirement::{Requirement, require};
+use crate::model::sampled;
 use crate::model::scalar::Scalar;
 
 /// A routine of parameters and unknowns.
@@ -128,7 +129,7 @@ pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut 
     let lost = assembled(of, system, x)?;
     let clocks = system.clocks();
     if clock::is_due(&clocks, 0.0) {
-        clock::compute_due(system, &clocks, 0.0, &branches(system, 0.0, x), x);
+        sampled::compute_due(system, &clocks, 0.0, &branches(system, 0.0, x), x);
     }
     Ok(lost)
 }

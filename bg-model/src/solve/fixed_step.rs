@@ -10,6 +10,7 @@ use thiserror::Error;
 
 use crate::model::clock::{self, Clock};
 use crate::model::description::{Description, OperationCount};
+use crate::model::sampled;
 use crate::model::scalar::Scalar;
 use crate::model::system::{System, branches_by_sign, switches};
 use crate::solve::integrator::rk4;
@@ -176,7 +177,7 @@ impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G
             negative[switch] = Clock { switch, period, first }.next(before) <= now + clock::rounding(now);
         }
         let [before, value] = room.each_mut().map(|guards| guards.as_mut_slice());
-        clock::decide(
+        sampled::decide(
             &mut negative,
             |k| clocks.contains(&k),
             [before, value],

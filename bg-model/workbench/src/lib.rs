@@ -93,7 +93,7 @@ mod run;
 mod show;
 mod studies;
 
-pub use ask::{compiled, inputs, machine, maker, parameters, request, scenes};
+pub use ask::{compiled, inputs, machine, maker, parameters, request, scenes, table_file};
 pub use bg_analysis::linear;
 #[cfg(not(target_arch = "wasm32"))]
 pub use command::calls;

@@ -5,7 +5,6 @@
 
 use std::rc::Rc;
 
-use bg_model::clock;
 use bg_model::dynamics::Machine;
 use bg_model::failure::Origin;
 use bg_model::integrator::{AnyMethod, Integrator, Tolerances};
@@ -13,6 +12,7 @@ use bg_model::run::Request;
 use bg_model::simulation::{Ongoing, Settings, raise, sizes_of};
 use bg_model::standing::{CLOSE, Misplaced, Standing};
 use bg_model::statistics::Statistics;
+use bg_model::{clock, sampled};
 
 use super::Fault;
 use super::saved::Place;
@@ -195,7 +195,7 @@ impl Stood {
         self.stand(DRIFT)?;
         if self.t > self.computed {
             self.computed = self.t;
-            self.x = clock::computed(&*self.model, self.t, &self.x, self.negative.as_deref());
+            self.x = sampled::computed(&*self.model, self.t, &self.x, self.negative.as_deref());
         }
         if self.model.switches() > 0 {
             // A run of no length finds branches and impacts.

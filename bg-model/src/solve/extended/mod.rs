@@ -18,6 +18,7 @@ use thiserror::Error;
 
 use crate::model::clock::{self, Clock};
 use crate::model::dynamics::{Dynamics, Machine};
+use crate::model::sampled;
 use crate::model::scalar::{DoubleDouble, Scalar};
 use crate::solve::failure::switch_text;
 use crate::solve::simulation::Span;
@@ -243,7 +244,7 @@ impl<'a, S: Scalar<Switch = bool>> Run<'a, S> {
             return Ok(());
         }
         self.computed = t;
-        clock::compute_due(self.system, &self.clocks, t, &self.negative, &mut self.x);
+        sampled::compute_due(self.system, &self.clocks, t, &self.negative, &mut self.x);
         // Guards that this moves to the wrong side change their branches at once.
         self.switch(vec![false; self.negative.len()])
     }

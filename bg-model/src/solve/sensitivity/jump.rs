@@ -8,9 +8,9 @@
 
 use nalgebra::DVector;
 
-use crate::model::clock;
 use crate::model::dynamics::Dynamics;
 use crate::model::reactions::{Collision, impacts_of};
+use crate::model::sampled;
 use crate::model::scalar::slopes::WIDTH;
 use crate::model::scalar::{Gradient, Scalar};
 use crate::solve::simulation::Switching;
@@ -111,7 +111,7 @@ pub(super) fn struck(
     if instant(system, event).is_some() {
         let clocks = system.clocks();
         let ticking = clocks.iter().map(|clock| clock.switch).filter(|&switch| reached[switch]);
-        clock::compute(system, &ticking.collect::<Vec<_>>(), t, negative_before, &mut x);
+        sampled::compute(system, &ticking.collect::<Vec<_>>(), t, negative_before, &mut x);
         return x;
     }
     // As the step to the event and the event itself do: what a memory follows is taken at this instant, which depends

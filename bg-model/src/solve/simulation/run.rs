@@ -16,6 +16,7 @@ use crate::model::clock::{self, Clock};
 #[cfg(feature = "std")]
 use crate::model::reactions::LoopsInLanes;
 use crate::model::reactions::{After, Broken, Collision, EndMonitor, LoopMonitor};
+use crate::model::sampled;
 #[cfg(feature = "std")]
 use crate::model::scalar::lanes::Vector;
 use crate::solve::event::{Crossing, EventMonitor, Located, Stop, Struck};
@@ -396,7 +397,7 @@ impl<'a> Run<'a> {
         let (before, negative_before) = (self.stepper.start.clone(), self.stepper.negative.clone());
         let none = vec![false; negative_before.len()];
         let Stepper { system, start, negative, .. } = &mut self.stepper;
-        clock::compute_due(*system, &self.clocks, t, negative, start.x.as_mut_slice());
+        sampled::compute_due(*system, &self.clocks, t, negative, start.x.as_mut_slice());
         // Guards that this moves to the wrong side change their branches at once.
         self.monitor.settle(&mut self.stepper, none.clone(), self.controller.reach());
         self.check_start()?;

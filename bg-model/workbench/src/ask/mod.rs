@@ -10,3 +10,4 @@ pub mod quantity;
 pub mod reference;
 pub mod request;
 pub mod scenes;
+pub mod table_file;

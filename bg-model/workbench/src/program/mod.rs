@@ -9,7 +9,7 @@ use crate::ask::maker::Maker;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::ask::scenes::Scene;
 use crate::ask::scenes::{Models, in_small_letters};
-use crate::run::recipe::TableFile;
+use crate::ask::table_file::TableFile;
 use crate::show::extras::{Extras, Plain};
 use case::{Case, CaseSolution};
 

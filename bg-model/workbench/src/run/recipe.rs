@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use crate::ask::request::Integration;
+use crate::ask::table_file::TableFile;
 use crate::run::running::Begin;
 
 /// A value of a parameter with its unit.
@@ -27,18 +28,6 @@ pub struct ModelFile {
     /// Its name, without its folder.
     pub name: String,
     /// The CRC-32 of its bytes; files that it uses are not among them.
-    pub crc32: String,
-}
-
-/// A table with the file that its points were from.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TableFile {
-    /// The name of the table.
-    pub table: String,
-    /// The file.
-    pub file: std::path::PathBuf,
-    /// Its CRC-32.
     pub crc32: String,
 }
 
@@ -102,7 +91,7 @@ mod read {
     use bg_model::description::{Description, ParameterInfo};
     use thiserror::Error;
 
-    use super::{Quantity, Recipe, TableFile};
+    use super::{Quantity, Recipe};
     use crate::ask::inputs::Named;
     use crate::ask::parameters::Values;
     use crate::files::crc32;
@@ -136,19 +125,6 @@ mod read {
         let source =
             |input: &Named| Some((input.name.to_owned(), input.table.as_ref()?.source.as_ref()?.crc32.clone()));
         inputs.iter().filter_map(source).collect()
-    }
-
-    impl TableFile {
-        /// A table with the points of the file at `path`.
-        ///
-        /// # Errors
-        /// The file cannot be read.
-        pub fn at(table: &str, path: &Path) -> std::io::Result<Self> {
-            // As it is found from any folder.
-            let file = path.canonicalize()?;
-            let crc32 = crc32(&std::fs::read(&file)?);
-            Ok(Self { table: table.to_owned(), file, crc32 })
-        }
     }
 
     /// The recipe in the `summary.json` at `path`.
