@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 use bg_compiler::graph::units::DOMAINS;
 
-/// Words of Rust in paths, what parts of other calls are handed on with, and a number of components.
-const OTHERS: [&str; 5] = ["crate", "self", "super", "from", "3"];
+/// Words of Rust in paths, and a number of components.
+const OTHERS: [&str; 4] = ["crate", "self", "super", "3"];
 
 type Words = BTreeSet<String>;
 
