@@ -4,6 +4,7 @@
 
 use std::path::{Path, PathBuf};
 
+use bg_workbench::files::crc32;
 use bg_workbench::recipe::{AgainError, read};
 use bg_workbench::table_file::TableFile;
 use thiserror::Error;
@@ -56,9 +57,14 @@ pub fn given(named: &[(String, PathBuf)], again: Option<&Path>) -> Result<Vec<Ta
     then.into_iter().map(same).collect()
 }
 
+/// A table with the points of the file at `path`, as it is found from any folder.
 fn at(name: &str, path: &Path) -> Result<TableFile, TableFault> {
-    let unreadable = |fault| TableFault::Unreadable { name: name.to_owned(), path: path.to_owned(), fault };
-    TableFile::at(name, path).map_err(unreadable)
+    let read = || {
+        let file = path.canonicalize()?;
+        let crc32 = crc32(&std::fs::read(&file)?);
+        Ok(TableFile { table: name.to_owned(), file, crc32 })
+    };
+    read().map_err(|fault| TableFault::Unreadable { name: name.to_owned(), path: path.to_owned(), fault })
 }
 
 /// The text with these tables.

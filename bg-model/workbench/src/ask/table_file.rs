@@ -13,17 +13,3 @@ pub struct TableFile {
     /// Its CRC-32.
     pub crc32: String,
 }
-
-#[cfg(not(target_arch = "wasm32"))]
-impl TableFile {
-    /// A table with the points of the file at `path`.
-    ///
-    /// # Errors
-    /// The file cannot be read.
-    pub fn at(table: &str, path: &std::path::Path) -> std::io::Result<Self> {
-        // As it is found from any folder.
-        let file = path.canonicalize()?;
-        let crc32 = crate::files::crc32(&std::fs::read(&file)?);
-        Ok(Self { table: table.to_owned(), file, crc32 })
-    }
-}

@@ -225,3 +225,39 @@ impl Expansion<'_> {
 
 /// The axes of the ground.
 const IDENTITY: &str = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
+
+/// Points of a curve through these, each with its argument first: as many as a picture needs, on cubics whose slopes at a
+/// point are those of the line through its neighbours.
+pub(super) fn rounded(knots: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let slope = |k: usize| {
+        let ([x, y], [u, v]) = (knots[k.saturating_sub(1)], knots[(k + 1).min(knots.len() - 1)]);
+        (v - y) / (u - x)
+    };
+    let pieces = (BARS as usize).div_ceil(knots.len().max(2) - 1);
+    let between = |k: usize| {
+        let ([x, y], [u, v], step) = (knots[k], knots[k + 1], knots[k + 1][0] - knots[k][0]);
+        let [before, behind] = [k, k + 1].map(|k| slope(k) * step - (v - y));
+        (0..pieces).map(move |piece| {
+            let part = piece as f64 / pieces as f64;
+            let bend = part * (1.0 - part) * (before * (1.0 - part) - behind * part);
+            [x + part * (u - x), y + part * (v - y) + bend]
+        })
+    };
+    (1..knots.len()).flat_map(|k| between(k - 1)).chain(knots.last().copied()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_goes_through_its_points_and_is_round_between_them() {
+        let knots: Vec<[f64; 2]> = (0..=12).map(|k| f64::from(k) * TAU / 12.0).map(|x| [x, x.sin()]).collect();
+        let curve = rounded(&knots);
+        assert_eq!(curve.len(), 12 * 4 + 1);
+        assert!(knots.iter().enumerate().all(|(k, knot)| curve[4 * k] == *knot));
+        // The lines between the points are 0.034 off.
+        assert!(curve.iter().all(|[x, y]| (y - x.sin()).abs() < 0.01), "{curve:?}");
+        assert_eq!((rounded(&[]), rounded(&knots[..1])), (Vec::new(), vec![knots[0]]));
+    }
+}

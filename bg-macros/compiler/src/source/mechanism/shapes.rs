@@ -8,6 +8,7 @@
 //! Unilateral Contacts (1996), section 4.2: contour parameters). The force acts along the gradient of the distance by
 //! the pose with q moving along, so that the power of the C is exact whatever truncation leaves.
 
+use super::drawing::rounded;
 use super::{End, Expansion, MechanismFault};
 use crate::fault::near_miss;
 use crate::source::ast::{
@@ -320,17 +321,18 @@ impl Expansion<'_> {
         unit.is_some_and(|unit| unit.dimension == bg_units::Dimension::NONE)
     }
 
-    /// The places of a profile's points, m, in the axes of its end.
+    /// Places of a profile, m, in the axes of its end, as far as the eye can tell.
     pub(super) fn outline(&self, profile: &Name) -> Vec<[f64; 2]> {
         let Some(Table { argument, value, points, .. }) = self.table(profile) else { return Vec::new() };
         let scales = [argument, value].map(|unit| unit.meaning().map_or(1.0, |unit| unit.size()));
         let rows = if let ExpressionKind::Vector(rows) = &points.kind { &rows[..] } else { &[] };
-        let place = |row: &Expression| {
+        let knot = |row: &Expression| {
             let ExpressionKind::Vector(pair) = &row.kind else { return None };
-            let [at, of] = [pair.first()?.number()? * scales[0], pair.get(1)?.number()? * scales[1]];
-            Some(if self.is_outline(profile) { [of * at.cos(), of * at.sin()] } else { [at, of] })
+            Some([pair.first()?.number()? * scales[0], pair.get(1)?.number()? * scales[1]])
         };
-        rows.iter().filter_map(place).collect()
+        let is_angle = self.is_outline(profile);
+        let place = |[at, of]: [f64; 2]| if is_angle { [of * at.cos(), of * at.sin()] } else { [at, of] };
+        rounded(&rows.iter().filter_map(knot).collect::<Vec<_>>()).into_iter().map(place).collect()
     }
 
     /// A profile at the displacement q: its point p, p' and p'' in the axes of its body, `NAME.px` and so on.
