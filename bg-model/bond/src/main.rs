@@ -77,18 +77,18 @@ fn program(Call { file, graph, is_interpreted, most, tables, command, options }:
         Err(fault) => return refused(fault),
     };
     let crc32 = crc32(read.text.as_bytes());
-    let tables = match tables::given(&tables, arguments::again(&options).as_deref()) {
+    let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into)).chain(options);
+    let words = match config::words(words) {
+        Ok(words) => words,
+        Err(fault) => return refused(fault),
+    };
+    let tables = match tables::given(&tables, arguments::again(&words.options()).as_deref()) {
         Ok(tables) => tables,
         Err(fault) => return refused(fault),
     };
     let read = match tables::put(read, &tables) {
         Ok(read) => read,
         Err(fault) => return refused(format!("--table: {fault}")),
-    };
-    let words = ["bond".into()].into_iter().chain(command.iter().map(Into::into)).chain(options);
-    let words = match config::words(words) {
-        Ok(words) => words,
-        Err(fault) => return refused(fault),
     };
     let wanted = file::Wanted { scene: arguments::only_scene(&command, &words.options()), most };
     let graphs = match file::graphs(&read, &wanted) {

@@ -33,6 +33,10 @@ fn a_run_takes_other_points_and_is_made_again_with_them() {
     told(at, "run fan.bond --again first/summary.json --out second");
     let trajectory = |run: &str| std::fs::read(at.join(run).join("trajectory.csv")).expect("a trajectory");
     assert_eq!(trajectory("first"), trajectory("second"));
+    // A file of options asks for it as well.
+    write(&folder, "again.toml", "again = \"first/summary.json\"\n");
+    told(at, "run fan.bond --config again.toml --out by_file");
+    assert_eq!(trajectory("first"), trajectory("by_file"));
     write(&folder, "new.csv", "0, 5\n100, 5\n");
     let changed = refused(at, "run fan.bond --again first/summary.json --out third", 2);
     assert!(
