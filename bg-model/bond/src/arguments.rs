@@ -124,12 +124,6 @@ const COMMANDS: [(&str, &str); 15] = [
     ("parameters", "Lists the parameters"),
     ("fmu", "Packs a functional mock-up unit"),
 ];
-/// The version, with the commit where the program was built with `BG_COMMIT=$(git rev-parse HEAD)`.
-pub fn version() -> String {
-    let commit = option_env!("BG_COMMIT").map_or_else(String::new, |commit| format!("+{commit:.12}"));
-    format!("{}{commit}", env!("CARGO_PKG_VERSION"))
-}
-
 /// Those of its command `golden`.
 const GOLDEN: [(&str, &str); 2] =
     [("record", "Runs and records"), ("check", "Runs again what is recorded and says what differs")];
@@ -192,6 +186,12 @@ pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Error> 
         Some((name, _)) if command().find_subcommand(name).is_none() => Err(unknown(name)),
         _ => own(),
     }
+}
+
+/// The version, with the commit where the program was built with `BG_COMMIT=$(git rev-parse HEAD)`.
+pub fn version() -> String {
+    let commit = option_env!("BG_COMMIT").map_or_else(String::new, |commit| format!("+{commit:.12}"));
+    format!("{}{commit}", env!("CARGO_PKG_VERSION"))
 }
 
 fn command() -> Command {

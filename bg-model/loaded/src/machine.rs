@@ -9,7 +9,7 @@ use std::rc::Rc;
 
 use bg_model::assembly::AssemblyError;
 use bg_model::capability::{Operations, SeriesSize};
-use bg_model::clock::Clock;
+use bg_model::clock::{self, Clock};
 use bg_model::description::{Description, StateInfo};
 use bg_model::drawing;
 use bg_model::dynamics::{Dynamics, Machine, Rates, Swept};
@@ -82,10 +82,9 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
 
     fn clocks(&self) -> Vec<Clock<S>> {
         let Some(program) = &self.programs().clocks else { return Vec::new() };
-        let mut times = vec![S::from_f64(0.0); 2 * self.blueprint.clocks.len()];
-        of_parameters(program, &self.values, &[], Some(&self.decided), &mut times);
-        let clock = |(&switch, times): (&usize, &[S])| Clock { switch, period: times[0], first: times[1] };
-        self.blueprint.clocks.iter().zip(times.chunks_exact(2)).map(clock).collect()
+        clock::listed(&self.blueprint.clocks, |times| {
+            of_parameters(program, &self.values, &[], Some(&self.decided), times);
+        })
     }
 
     fn first_branches(&self) -> Vec<bool> {

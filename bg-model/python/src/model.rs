@@ -8,11 +8,10 @@ use std::path::{Path, PathBuf};
 use bg_model::nalgebra::DMatrix;
 use bg_workbench::Program;
 use bg_workbench::calls::{self, Asked, Ran, Started};
+use bg_workbench::files::head::name_and_unit;
 use bg_workbench::files::parquet;
 use bg_workbench::inputs::Named;
-use bg_workbench::linear::{Branch, Mode};
 use bg_workbench::optimize;
-use bg_workbench::sweep::campbell::{Campbell, Critical};
 use bg_workbench::sweep::folder::{Folder, Kind};
 use bg_workbench::sweep::plan::Plan;
 use bg_workbench::sweep::{Outcome, Share, recipe, shown, sweep};
@@ -254,8 +253,8 @@ impl Model {
         });
         let (drawn, found) = found?.map_err(refused)?;
         let all = PyDict::new(py);
-        all.set_item("modes", modes(py, &found)?)?;
-        all.set_item("critical_speeds", critical_speeds(py, &found)?)?;
+        all.set_item("modes", with_heads(py, found.modes())?)?;
+        all.set_item("critical_speeds", with_heads(py, found.critical_speeds())?)?;
         // No mode swings where one could be drawn.
         all.set_item("picture", drawn.ok().map(|svg| Bound::new(py, Picture { svg })).transpose()?)?;
         Ok(all)
@@ -462,49 +461,6 @@ impl Picture {
     }
 }
 
-/// The modes that swing: a row for each at each value of the parameter.
-fn modes(py: Python<'_>, found: &Campbell) -> PyResult<Table> {
-    let points = || {
-        let of = |(place, branch): (usize, &Branch)| {
-            let place = i64::try_from(place + 1).unwrap_or(i64::MAX);
-            branch.points.iter().map(move |(value, mode)| (place, *value, mode.clone())).collect::<Vec<_>>()
-        };
-        found.branches.iter().enumerate().flat_map(of)
-    };
-    let real = |of: fn(&Mode) -> f64| Values::Real(points().map(|(.., mode)| of(&mode)).collect());
-    let by = found.asked.by;
-    let columns = [
-        ("mode", "", Values::Whole(points().map(|(place, ..)| place).collect())),
-        (by.name, by.unit, Values::Real(points().map(|(_, value, _)| value).collect())),
-        ("frequency", "Hz", real(|mode| mode.frequency)),
-        ("damping", "", real(|mode| mode.damping.unwrap_or(f64::NAN))),
-        ("real", "1/s", real(|mode| mode.real)),
-        ("imaginary", "rad/s", real(|mode| mode.imaginary)),
-        ("words", "", Values::Text(points().map(|(.., mode)| mode.words).collect())),
-    ];
-    named_columns(py, columns)
-}
-
-/// Where orders meet modes.
-fn critical_speeds(py: Python<'_>, found: &Campbell) -> PyResult<Table> {
-    let real = |of: fn(&Critical) -> f64| Values::Real(found.criticals.iter().map(of).collect());
-    let by = found.asked.by;
-    let place = |critical: &Critical| i64::try_from(critical.branch + 1).unwrap_or(i64::MAX);
-    let columns = [
-        ("order", "", real(|critical| critical.order)),
-        (by.name, by.unit, real(|critical| critical.value)),
-        ("frequency", "Hz", real(|critical| critical.mode.frequency)),
-        ("damping", "", real(|critical| critical.mode.damping.unwrap_or(f64::NAN))),
-        ("mode", "", Values::Whole(found.criticals.iter().map(place).collect())),
-    ];
-    named_columns(py, columns)
-}
-
-fn named_columns<const K: usize>(py: Python<'_>, columns: [(&str, &str, Values); K]) -> PyResult<Table> {
-    let columns = columns.into_iter().map(|(name, unit, values)| (name.to_owned(), unit.to_owned(), values));
-    Table::new(py, columns, PyDict::new(py))
-}
-
 /// A text, or several.
 #[derive(FromPyObject)]
 enum Texts {
@@ -525,16 +481,28 @@ impl Texts {
 fn of_parquet(py: Python<'_>, table: parquet::Table, info: Bound<'_, PyDict>) -> PyResult<Table> {
     let units = table.texts.iter().find(|(name, _)| name == "units").map(|(_, text)| text.as_str());
     let units: BTreeMap<String, String> = serde_json::from_str(units.unwrap_or("{}")).unwrap_or_default();
+    let unit = |column: parquet::Column| {
+        let unit = units.get(&column.name).cloned().unwrap_or_default();
+        (column.name, unit, of_column(column.values))
+    };
+    Table::new(py, table.columns.into_iter().map(unit), info)
+}
+
+/// A table with the units that its heads have.
+fn with_heads(py: Python<'_>, table: parquet::Table) -> PyResult<Table> {
     let columns = table.columns.into_iter().map(|parquet::Column { name, values }| {
-        let unit = units.get(&name).cloned().unwrap_or_default();
-        let values = match values {
-            parquet::Values::Real(values) => Values::Real(values),
-            parquet::Values::Whole(values) => Values::Whole(values),
-            parquet::Values::Text(values) => Values::Text(values),
-        };
-        (name, unit, values)
+        let (name, unit) = name_and_unit(&name);
+        (name.to_owned(), unit.unwrap_or_default().to_owned(), of_column(values))
     });
-    Table::new(py, columns, info)
+    Table::new(py, columns, PyDict::new(py))
+}
+
+fn of_column(values: parquet::Values) -> Values {
+    match values {
+        parquet::Values::Real(values) => Values::Real(values),
+        parquet::Values::Whole(values) => Values::Whole(values),
+        parquet::Values::Text(values) => Values::Text(values),
+    }
 }
 
 /// A plan from a path or a dict.

@@ -23,7 +23,8 @@ pub struct Clock<S = f64> {
 }
 
 /// The clocks with these switches; `instants` writes of each its period and its first instant, s.
-pub(crate) fn listed<S: Scalar>(switches: &[usize], instants: impl FnOnce(&mut [S])) -> Vec<Clock<S>> {
+#[must_use]
+pub fn listed<S: Scalar>(switches: &[usize], instants: impl FnOnce(&mut [S])) -> Vec<Clock<S>> {
     if switches.is_empty() {
         return Vec::new();
     }

@@ -76,7 +76,9 @@ fn points(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Points> {
     };
     let rows = given.try_iter().and_then(|rows| rows.map(|of| row(of?)).collect::<PyResult<Vec<_>>>());
     rows.map(Points::Rows).map_err(|_| {
-        PyValueError::new_err(format!("the table `{name}`: give the path of a CSV file, or rows such as [[0, 12], [100, 15]]"))
+        PyValueError::new_err(format!(
+            "the table `{name}`: give the path of a CSV file, or rows such as [[0, 12], [100, 15]]"
+        ))
     })
 }
 

@@ -183,7 +183,8 @@ pub fn campbell(program: &Program, arguments: &CampbellArguments) -> Result<Exit
     let (is_written, faults) = write(folder, &found, &scene.name, &text);
     let written = if is_written { arguments.out.display().to_string() } else { "nothing".to_owned() };
     let told = format!("{text}\nwritten: {written}; open {SVG} there\n");
-    let json = || json!({ "modes": rows(&found.csv()), "critical_speeds": rows(&found.criticals_csv()) });
+    let json =
+        || json!({ "modes": rows(&found.modes().csv()), "critical_speeds": rows(&found.critical_speeds().csv()) });
     let printed = console::tell_as(arguments.json, &told, json);
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
 }
@@ -193,9 +194,9 @@ fn write(mut folder: RunFolder, found: &Campbell, scene: &str, text: &str) -> (b
     let mut faults = Vec::new();
     let mut fill = || -> Result<(), FileError> {
         folder.write_text(TEXT, text)?;
-        folder.write_text(CSV, &found.csv())?;
+        folder.write_text(CSV, &found.modes().csv())?;
         if !found.asked.orders.is_empty() {
-            folder.write_text(CRITICALS, &found.criticals_csv())?;
+            folder.write_text(CRITICALS, &found.critical_speeds().csv())?;
         }
         match found.drawn(scene) {
             Ok(svg) => folder.write_text(SVG, &svg),

@@ -8,7 +8,7 @@
 pub mod commit;
 pub mod console;
 mod folder;
-pub(crate) mod head;
+pub mod head;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod json;
 pub mod parquet;

@@ -10,6 +10,7 @@ use bg_model::description::ParameterInfo;
 use bg_units::Unit;
 
 use crate::ask::parameters::number;
+use crate::files::parquet::{Column, Table, Values};
 use crate::files::table::table;
 use crate::run::summary::short;
 use crate::show::figures::FigureError;
@@ -180,46 +181,37 @@ impl Campbell {
         !self.branches.is_empty() && self.branches.iter().all(still)
     }
 
-    /// All points as CSV: a row for each mode at each value.
+    /// A row for each mode at each value.
     #[must_use]
-    pub fn csv(&self) -> String {
-        let by = self.asked.by;
-        let mut csv = csv::Writer::from_writer(Vec::new());
-        let mut row = |cells: [String; 7]| csv.write_record(cells).expect("memory takes it");
-        let value = if by.unit == "1" { by.name.to_owned() } else { format!("{} [{}]", by.name, by.unit) };
-        let rest = ["frequency [Hz]", "damping", "real [1/s]", "imaginary [rad/s]", "what moves"].map(str::to_owned);
-        let [frequency, damping, real, imaginary, words] = rest;
-        row(["mode".to_owned(), value, frequency, damping, real, imaginary, words]);
-        for (place, branch) in self.branches.iter().enumerate() {
-            for (value, mode) in &branch.points {
-                let damping = mode.damping.map_or_else(String::new, exact);
-                let numbers = [*value, mode.frequency].map(exact);
-                let [value, frequency] = numbers;
-                row([
-                    (place + 1).to_string(),
-                    value,
-                    frequency,
-                    damping,
-                    exact(mode.real),
-                    exact(mode.imaginary),
-                    mode.words.clone(),
-                ]);
-            }
-        }
-        String::from_utf8(csv.into_inner().expect("memory takes it")).expect("cells are text")
+    pub fn modes(&self) -> Table {
+        let points = self.branches.iter().zip(1..).flat_map(|(branch, place): (&Branch, i64)| {
+            branch.points.iter().map(move |(value, mode)| (place, *value, mode))
+        });
+        let points: Vec<(i64, f64, &Mode)> = points.collect();
+        let real = |of: &dyn Fn(&(i64, f64, &Mode)) -> f64| Values::Real(points.iter().map(of).collect());
+        columns([
+            ("mode", "", Values::Whole(points.iter().map(|point| point.0).collect())),
+            (self.asked.by.name, self.asked.by.unit, real(&|point| point.1)),
+            ("frequency", "Hz", real(&|point| point.2.frequency)),
+            ("damping", "", real(&|point| point.2.damping.unwrap_or(f64::NAN))),
+            ("real", "1/s", real(&|point| point.2.real)),
+            ("imaginary", "rad/s", real(&|point| point.2.imaginary)),
+            ("what moves", "", Values::Text(points.iter().map(|point| point.2.words.clone()).collect())),
+        ])
     }
 
-    /// Critical speeds as CSV.
+    /// A row for each place where an order meets a mode.
     #[must_use]
-    pub fn criticals_csv(&self) -> String {
-        let by = self.asked.by;
-        let mut text = format!("order,{} [{}],frequency [Hz],damping,mode\n", by.name, by.unit);
-        for Critical { order, branch, value, mode } in &self.criticals {
-            let damping = mode.damping.map_or_else(String::new, exact);
-            text +=
-                &format!("{},{},{},{damping},{}\n", exact(*order), exact(*value), exact(mode.frequency), branch + 1);
-        }
-        text
+    pub fn critical_speeds(&self) -> Table {
+        let real = |of: fn(&Critical) -> f64| Values::Real(self.criticals.iter().map(of).collect());
+        let place = |critical: &Critical| i64::try_from(critical.branch + 1).unwrap_or(i64::MAX);
+        columns([
+            ("order", "", real(|critical| critical.order)),
+            (self.asked.by.name, self.asked.by.unit, real(|critical| critical.value)),
+            ("frequency", "Hz", real(|critical| critical.mode.frequency)),
+            ("damping", "", real(|critical| critical.mode.damping.unwrap_or(f64::NAN))),
+            ("mode", "", Values::Whole(self.criticals.iter().map(place).collect())),
+        ])
     }
 
     /// Draws frequencies over the parameter, lines of the orders, and where they meet.
@@ -300,7 +292,11 @@ fn damping_text(damping: f64) -> String {
     if text == "-0.0000" { "0.0000".to_owned() } else { text }
 }
 
-/// The shortest digits that give the same number.
-fn exact(value: f64) -> String {
-    format!("{value:?}")
+/// Columns with their units in their heads.
+fn columns<const K: usize>(columns: [(&str, &str, Values); K]) -> Table {
+    let column = |(name, unit, values): (&str, &str, Values)| {
+        let name = if matches!(unit, "" | "1") { name.to_owned() } else { format!("{name} [{unit}]") };
+        Column { name, values }
+    };
+    Table { columns: columns.map(column).into(), texts: Vec::new() }
 }
