@@ -12,6 +12,8 @@ use tempfile::TempDir;
 mod campbell;
 #[path = "program/identify.rs"]
 mod identify;
+#[path = "program/json.rs"]
+mod json;
 #[path = "program/optimize.rs"]
 mod optimize;
 #[path = "program/plot.rs"]

@@ -134,6 +134,10 @@ pub struct GraphArguments {
     /// How much of it is drawn
     #[arg(long, value_name = "LEVEL", value_enum, default_value_t)]
     pub level: Level,
+
+    /// Print it as JSON: elements, bonds, states, equations and operations, or one part of these
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Which model is packed, and into what.
@@ -158,6 +162,10 @@ pub struct FmuArguments {
     /// The end of a simulation that the unit proposes, s
     #[arg(long, value_name = "SECONDS", default_value_t = T_END)]
     pub t_end: f64,
+
+    /// Print what was packed as JSON in place of the text
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What is run, and how.
@@ -414,6 +422,10 @@ pub struct RecordArguments {
     /// What it is called: the files are NAME.toml and NAME.csv [default: the scene's name]
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
+
+    /// Print what is recorded as JSON in place of the text
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -496,6 +508,10 @@ pub struct PrecisionArguments {
     /// Folder for precision.txt, precision.json and the diagrams, which replace those of the run before
     #[arg(long, value_name = "DIR", default_value = "out/precision")]
     pub out: PathBuf,
+
+    /// Print what is measured as JSON in place of the table: what precision.json has
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// A number on the command line.
@@ -506,6 +522,25 @@ fn real(text: &str) -> Result<f64, &'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_command_that_tells_something_has_it_as_json() {
+        fn leaves(command: &clap::Command) -> Vec<&clap::Command> {
+            if command.get_name() == "help" {
+                return Vec::new();
+            }
+            let below = command.get_subcommands().flat_map(leaves);
+            // `golden` alone is none.
+            let own = !command.is_subcommand_required_set();
+            below.chain(own.then_some(command)).collect()
+        }
+        let command = <Cli as clap::CommandFactory>::command();
+        let is_json = |command: &clap::Command| command.get_arguments().any(|argument| argument.get_id() == "json");
+        let without: Vec<_> = leaves(&command).into_iter().filter(|command| !is_json(command)).collect();
+        let names: Vec<_> = without.iter().map(|command| command.get_name()).collect();
+        // What they print is for a shell and for `man`.
+        assert_eq!(names, ["completions", "man"]);
+    }
 
     #[test]
     fn what_is_not_given_is_as_elsewhere() {

@@ -80,7 +80,14 @@ pub(super) fn pack(program: &Program, arguments: &FmuArguments) -> Result<ExitCo
     let unit = archive(&model, &packing, &bytes, resources);
     whole::write(&path, |file| file.write_all(&unit?))?;
     let (name, version, platform) = (scene.description.name, version.name(), bg_fmi::archive::platform(version));
-    Ok(ended(console::tell(&format!("{}: {name} for FMI {version}, {platform}\n", path.display())).err()))
+    let told = format!("{}: {name} for FMI {version}, {platform}\n", path.display());
+    let json = || {
+        serde_json::json!({
+            "file": path.display().to_string(), "model": name, "fmi": version, "platform": platform,
+            "library": library.display().to_string(),
+        })
+    };
+    Ok(ended(console::tell_as(arguments.json, &told, json).err()))
 }
 
 /// A name of letters, digits and underscores, for a library in a unit.

@@ -10,11 +10,11 @@ use super::{InputError, ended};
 use crate::files::console;
 use crate::program::Program;
 use crate::run::running::{Begin, Outcome};
-use crate::studies::golden::{Place, check_one, prepare};
+use crate::studies::golden::{Place, Recorded, check_one, prepare};
 
 /// A run that stops before its end is not recorded.
 pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode, InputError> {
-    let RecordArguments { model, integration, out, name } = arguments;
+    let RecordArguments { model, integration, out, name, json } = arguments;
     let (chosen, named) = chosen(program, model)?;
     let integration = integration.integration();
     let request = integration.request(0.0, None)?;
@@ -33,7 +33,8 @@ pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode
         &chosen.values,
         &run,
     );
-    Ok(ended(written.and_then(|line| console::tell(&format!("{line}\n"))).err()))
+    let told = |recorded: Recorded| console::tell_as(*json, &format!("{recorded}\n"), || recorded.json());
+    Ok(ended(written.and_then(told).err()))
 }
 
 pub fn check(program: &Program, arguments: &CheckArguments) -> Result<ExitCode, InputError> {

@@ -7,13 +7,14 @@ use super::arguments::GraphArguments;
 use super::{InputError, say};
 use crate::files::whole;
 use crate::program::Program;
-use crate::show::{picture, tables};
+use crate::show::{described, picture, tables};
 
 pub(super) fn graph(program: &Program, arguments: &GraphArguments) -> Result<ExitCode, InputError> {
     let scene = program.scene_called(&arguments.scene);
-    let GraphArguments { part, svg, dot, level, .. } = arguments;
+    let GraphArguments { part, svg, dot, level, json, .. } = arguments;
+    let told = || if *json { format!("{:#}\n", described::graph(scene, *part)) } else { tables::graph(scene, *part) };
     if svg.is_none() && dot.is_none() {
-        return Ok(say(&tables::graph(scene, *part)));
+        return Ok(say(&told()));
     }
     let graph = picture::graph(scene.description);
     let write = |path: &Path, text: String| whole::write(path, |file| file.write_all(text.as_bytes()));
@@ -26,5 +27,5 @@ pub(super) fn graph(program: &Program, arguments: &GraphArguments) -> Result<Exi
     if let Some(path) = dot {
         write(path, bg_picture::dot(&graph, (*level).into()))?;
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(if *json { say(&told()) } else { ExitCode::SUCCESS })
 }

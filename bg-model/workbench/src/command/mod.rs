@@ -54,7 +54,7 @@ use crate::run::recipe::AgainError;
 use crate::run::running::BeginError;
 use crate::run::samples::Unreadable;
 use crate::show::output::OutputError;
-use crate::show::tables;
+use crate::show::{described, tables};
 use crate::studies::golden::GoldenError;
 use crate::studies::identify::IdentifyError;
 use crate::studies::identify::data::Unusable;
@@ -209,7 +209,7 @@ fn obey(program: &Program, command: Command) -> Result<ExitCode, InputError> {
         Command::Sensitivity(arguments) => sensitivity::sensitivity(program, &arguments),
         Command::Scene { scene, json: true } => {
             let wanted = |known: &&Scene| scene.as_ref().is_none_or(|scene| known.name == *scene);
-            let all = program.models.scenes.iter().filter(wanted).map(tables::json).collect::<serde_json::Value>();
+            let all = program.models.scenes.iter().filter(wanted).map(described::scene).collect::<serde_json::Value>();
             Ok(say(&format!("{all:#}\n")))
         }
         Command::Scene { scene: None, json: false } => Ok(say(&tables::scenes(&program.models.scenes))),

@@ -17,6 +17,7 @@ use crate::ask::scenes::own_values;
 use crate::files::{FileError, console, whole};
 use crate::program::Program;
 use crate::run::samples::read_file_of;
+use crate::show::figures::plot::Series;
 use crate::show::signals::{Drawing, Over};
 
 /// What is drawn.
@@ -65,6 +66,10 @@ pub struct PlotArguments {
     /// The drawing. Replaces a file that is there
     #[arg(long, value_name = "FILE.svg", default_value = "out/plot.svg")]
     pub out: PathBuf,
+
+    /// Print what is drawn as JSON in place of the text: the points of each line
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// The least number of samples: a drawing of fewer would have corners.
@@ -96,15 +101,22 @@ pub fn plot(program: &Program, arguments: &PlotArguments) -> Result<ExitCode, In
     let outcome = follow(&*machine, Request { samples, ..request }, None)?;
     let others = others.iter().map(|(name, run)| (name.as_str(), run));
     let runs: Vec<(&str, &Recording)> = std::iter::once(("", &outcome.run.recording)).chain(others).collect();
-    let svg = drawing.plot(&scene.name, &runs, own.values()).drawn().map_err(|source| {
-        crate::show::output::OutputError::Figure { file: arguments.out.display().to_string(), source }
+    let plot = drawing.plot(&scene.name, &runs, own.values());
+    let svg = plot.drawn().map_err(|source| crate::show::output::OutputError::Figure {
+        file: arguments.out.display().to_string(),
+        source,
     })?;
     if let Some(folder) = arguments.out.parent() {
         let failed = |source| FileError::Write { path: folder.to_owned(), source };
         std::fs::create_dir_all(folder).map_err(failed)?;
     }
     whole::write(&arguments.out, |file| file.write_all(svg.as_bytes()))?;
-    let printed = console::tell(&format!("written: {}\n", arguments.out.display()));
+    let file = arguments.out.display().to_string();
+    let printed = console::tell_as(arguments.json, &format!("written: {file}\n"), || {
+        let line = |line: &Series| serde_json::json!({ "name": line.name, "points": line.points });
+        let lines: Vec<_> = plot.series.iter().map(line).collect();
+        serde_json::json!({ "file": file, "across": plot.across, "up": plot.up, "series": lines })
+    });
     let failure = outcome.failure.map(|failure| format!("the run failed: {failure}"));
     Ok(ended(printed.err().map(|fault| fault.to_string()).into_iter().chain(failure)))
 }

@@ -39,7 +39,8 @@ pub fn measure_all(program: &Program, arguments: &PrecisionArguments) -> Result<
         Ok(count) => (format!("{count} files in {}", arguments.out.display()), None),
         Err(fault) => ("nothing".to_owned(), Some(fault)),
     };
-    let printed = console::tell(&format!("{}\nwritten: {written}\n", report::table(&entries)));
+    let told = format!("{}\nwritten: {written}\n", report::table(&entries));
+    let printed = console::tell_as(arguments.json, &told, || serde_json::to_value(&entries).expect(report::IS_JSON));
     Ok(ended(fault.into_iter().chain(printed.err().map(OutputError::from))))
 }
 

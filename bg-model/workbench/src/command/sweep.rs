@@ -12,7 +12,8 @@ use crate::files::{console, json, whole};
 use crate::program::Program;
 use crate::studies::sweep::folder::{Folder, Kind};
 use crate::studies::sweep::plan::Plan;
-use crate::studies::sweep::{Outcome, Share, SweepError, drawn, recipe, shown, sweep};
+use crate::studies::sweep::shown::{self, Progress};
+use crate::studies::sweep::{Outcome, Share, SweepError, drawn, recipe, sweep};
 
 #[derive(Debug, Args)]
 #[command(subcommand_negates_reqs = true, args_conflicts_with_subcommands = true)]
@@ -56,19 +57,29 @@ enum SweepCommand {
         /// Write a row for each sample here, of a sweep that keeps trajectories
         #[arg(long, value_name = "FILE.csv")]
         trajectories: Option<PathBuf>,
+
+        /// Print what is there as JSON in place of the text
+        #[arg(long)]
+        json: bool,
     },
 }
 
 pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, InputError> {
     let SweepArguments { command, plan, out, threads, shard, json } = arguments;
-    if let Some(SweepCommand::Show { folder, csv, trajectories }) = command {
+    if let Some(SweepCommand::Show { folder, csv, trajectories, json }) = command {
         let folder = Folder::open(folder).map_err(SweepError::from)?;
-        let lines = shown::lines(&folder).map_err(SweepError::from)?;
+        let progress = Progress::of(&folder).map_err(SweepError::from)?;
         let told = drawn::write(program, &folder)?;
         for (kind, path) in [(Kind::Runs, csv), (Kind::Trajectories, trajectories)] {
             path.iter().try_for_each(|path| whole::write(path, |file| shown::write_csv(&folder, kind, file)))?;
         }
-        return Ok(say(&format!("{lines}{told}")));
+        let as_json = || {
+            let mut json = progress.json();
+            json["statistics"] = statistics(&folder);
+            json
+        };
+        let text = format!("{progress}{told}");
+        return Ok(if *json { say(&format!("{:#}\n", as_json())) } else { say(&text) });
     }
     let share = shard.as_deref().map_or(Ok(Share::ALL), Share::parse)?;
     let plan = Plan::read(program, plan.as_deref().expect("clap asks for it")).map_err(SweepError::from)?;
@@ -104,11 +115,16 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
 /// What was done, for programs.
 fn json_of(outcome: &Outcome, folder: &Folder) -> serde_json::Value {
     let Outcome { runs, made, found, made_runs, failed, .. } = *outcome;
-    let statistics = std::fs::read_to_string(folder.path().join(drawn::STATISTICS)).ok().map(|csv| json::rows(&csv));
     serde_json::json!({
         "folder": folder.path().display().to_string(), "runs": runs, "made": made_runs, "failed": failed, "files": made,
-        "found": found, "statistics": statistics,
+        "found": found, "statistics": statistics(folder),
     })
+}
+
+/// The statistics of a sweep's columns; null where it is not done.
+fn statistics(folder: &Folder) -> serde_json::Value {
+    let csv = std::fs::read_to_string(folder.path().join(drawn::STATISTICS)).ok();
+    csv.map_or(serde_json::Value::Null, |csv| json::rows(&csv))
 }
 
 /// What was done, and how to look at it.

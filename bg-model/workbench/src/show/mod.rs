@@ -1,5 +1,7 @@
 //! What a run and its model look like: figures, the picture of the graph, tables, a page, and the files of all that.
 
+#[cfg(not(target_arch = "wasm32"))]
+pub mod described;
 pub mod extras;
 pub mod figures;
 pub mod markup;

@@ -2,10 +2,10 @@
 //!
 //! In: a scene. Out: text, from the description that the compiler left in the scene's type.
 
-use bg_model::description::{BondEnd, Description, OperationCount, OutputInfo, ParameterInfo, StateInfo};
+use bg_model::description::{BondEnd, Description, OperationCount, ParameterInfo, StateInfo};
 use clap::ValueEnum;
 
-use crate::ask::parameters::{self, number};
+use crate::ask::parameters::number;
 use crate::ask::scenes::Scene;
 pub use crate::files::table::table;
 
@@ -35,21 +35,6 @@ pub fn scenes(scenes: &[Scene]) -> String {
         [name.clone(), description.states.len().to_string(), operations.to_string(), one_line(description.doc)]
     });
     table(&std::iter::once(head).chain(rows).collect::<Vec<_>>())
-}
-
-/// A scene for programs: its name, what it is, how many states it has, its parameters and outputs with their units.
-#[must_use]
-pub fn json(scene: &Scene) -> serde_json::Value {
-    let Scene { name, description, .. } = scene;
-    let output = |output: &OutputInfo| serde_json::json!({ "name": output.name, "unit": output.unit });
-    serde_json::json!({
-        "scene": name,
-        "doc": one_line(description.doc),
-        "states": description.states.len(),
-        "operations_a_rate": rate_operations(description).total(),
-        "parameters": parameters::json(description.parameters),
-        "outputs": description.outputs.iter().map(output).collect::<Vec<_>>(),
-    })
 }
 
 /// What became of the literal model in this scene, and why: counts, then state by state; the adjustable parameters; the
@@ -183,7 +168,7 @@ fn listed(names: &[String]) -> String {
     text + &format!(" {line}\n")
 }
 
-fn one_line(doc: &str) -> String {
+pub(super) fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

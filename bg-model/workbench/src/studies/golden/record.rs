@@ -2,8 +2,9 @@
 //!
 //! In: a run and how it was asked for. Out: its two files, each written whole. Tolerances that are there already stay.
 
+use std::fmt::{self, Display, Formatter};
 use std::fs;
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 use bg_model::run::Trajectory;
 
@@ -50,7 +51,7 @@ impl Place {
     }
 
     /// Writes `run`, which is what `scene`, of this commit, gives when it is integrated so with these inputs and
-    /// parameters. Gives one line on what is recorded.
+    /// parameters. Gives what is recorded.
     pub fn write(
         self,
         (scene, commit): (&str, Option<&str>),
@@ -58,7 +59,7 @@ impl Place {
         integration: Integration,
         parameters: &Values,
         run: &Trajectory,
-    ) -> Result<String, FileError> {
+    ) -> Result<Recorded, FileError> {
         let record = Record {
             model: self.model.to_owned(),
             version: VERSION.to_owned(),
@@ -79,8 +80,32 @@ impl Place {
             file.write_all(text.as_bytes())
         })?;
         whole::write(&csv, |file| run.write_csv(file))?;
-        let (name, size) = (&self.files.name, size(run));
-        Ok(format!("{name}: recorded, {size}, in {} and {}", csv.display(), toml.display()))
+        Ok(Recorded { name: self.files.name, size: size(run), csv, toml })
+    }
+}
+
+/// What is recorded; shown as a line.
+#[derive(Debug)]
+pub(crate) struct Recorded {
+    name: String,
+    /// Instants and columns, in words.
+    size: String,
+    csv: PathBuf,
+    toml: PathBuf,
+}
+
+impl Recorded {
+    /// The same for programs.
+    pub fn json(&self) -> serde_json::Value {
+        let Self { name, csv, toml, .. } = self;
+        serde_json::json!({ "name": name, "csv": csv.display().to_string(), "toml": toml.display().to_string() })
+    }
+}
+
+impl Display for Recorded {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { name, size, csv, toml } = self;
+        write!(f, "{name}: recorded, {size}, in {} and {}", csv.display(), toml.display())
     }
 }
 

@@ -65,6 +65,9 @@ pub fn table(entries: &[Entry]) -> String {
     text
 }
 
+/// Why entries can be written as JSON.
+pub const IS_JSON: &str = "entries have text keys only";
+
 const TEXT: &str = "precision.txt";
 const JSON: &str = "precision.json";
 
@@ -84,7 +87,7 @@ pub fn names<'c>(cases: impl IntoIterator<Item = &'c str>) -> Vec<String> {
 /// # Errors
 /// A file that cannot be written, a diagram that cannot be drawn.
 pub fn write(mut folder: RunFolder, entries: &[Entry]) -> Result<usize, OutputError> {
-    let json = serde_json::to_string_pretty(entries).expect("entries have text keys only");
+    let json = serde_json::to_string_pretty(entries).expect(IS_JSON);
     folder.write_text(TEXT, &table(entries))?;
     folder.write_text(JSON, &(json + "\n"))?;
     let mut cases: Vec<&str> = entries.iter().map(|entry| entry.case.as_str()).collect();

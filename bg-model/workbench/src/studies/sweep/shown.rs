@@ -1,8 +1,8 @@
 //! What the folder of a sweep has: how much of it is done, what failed and why; its tables as CSV.
 //!
-//! In: a folder. Out: lines for the terminal, rows for programs that read no Parquet. One shard is in memory at a time.
+//! In: a folder. Out: lines for the terminal, the same as JSON, rows for programs that read no Parquet. One shard is in memory at a time.
 
-use std::fmt::Write as _;
+use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
 
 use super::folder::{Folder, FolderError, Kind};
@@ -12,47 +12,85 @@ use crate::files::parquet::{Table, Values};
 /// The most reasons that are listed.
 const MOST: usize = 10;
 
-/// A line for each thing to know.
-///
-/// # Errors
-/// A file cannot be read.
-pub fn lines(folder: &Folder) -> Result<String, FolderError> {
-    let recipe = folder.entries()?;
-    let text = |name: &str| recipe.get(name).map_or_else(String::new, |value| value.to_string().replace('"', ""));
-    let mut reasons: Vec<(String, usize, i64)> = Vec::new();
-    let (mut shards, mut runs, mut failed) = (0, 0, 0);
-    for table in tables(folder, Kind::Runs)? {
-        let table = table?;
-        shards += 1;
-        let (Some(Values::Whole(numbers)), Some(Values::Text(found))) =
-            (values(&table, "run"), values(&table, "reason"))
+/// How much of a sweep is there. Shown as a line for each thing to know.
+#[derive(Debug)]
+pub struct Progress {
+    recipe: toml::Table,
+    /// Shards that are there.
+    shards: usize,
+    /// Runs in them.
+    runs: usize,
+    /// Runs that failed.
+    failed: usize,
+    /// Why: the reason, how many runs, the number of the first.
+    reasons: Vec<(String, usize, i64)>,
+}
+
+impl Progress {
+    /// That of the sweep in `folder`.
+    ///
+    /// # Errors
+    /// A file cannot be read.
+    pub fn of(folder: &Folder) -> Result<Self, FolderError> {
+        let mut found = Self { recipe: folder.entries()?, shards: 0, runs: 0, failed: 0, reasons: Vec::new() };
+        for table in tables(folder, Kind::Runs)? {
+            found.shards += 1;
+            found.count(&table?);
+        }
+        Ok(found)
+    }
+
+    /// Counts the runs of a shard.
+    fn count(&mut self, table: &Table) {
+        let (Some(Values::Whole(numbers)), Some(Values::Text(found))) = (values(table, "run"), values(table, "reason"))
         else {
-            continue;
+            return;
         };
-        runs += numbers.len();
+        self.runs += numbers.len();
         for (number, reason) in numbers.iter().zip(found).filter(|(_, reason)| !reason.is_empty()) {
-            failed += 1;
-            match reasons.iter().position(|(known, ..)| known == reason) {
-                Some(place) => reasons[place].1 += 1,
-                None if reasons.len() < MOST => reasons.push((reason.clone(), 1, *number)),
+            self.failed += 1;
+            match self.reasons.iter().position(|(known, ..)| known == reason) {
+                Some(place) => self.reasons[place].1 += 1,
+                None if self.reasons.len() < MOST => self.reasons.push((reason.clone(), 1, *number)),
                 None => {}
             }
         }
     }
-    let all = whole(&recipe, "runs").div_ceil(whole(&recipe, "shard").max(1));
-    let mut said = format!(
-        "sweep    {} {}, scene {}\nswept    {}\nruns     {runs} of {} in {shards} of {all} shards\nfailed   {failed}\n",
-        text("program"),
-        text("version"),
-        text("scene"),
-        text("swept").trim_matches(['[', ']']),
-        text("runs"),
-    );
-    for (reason, count, first) in reasons {
-        let runs = if count == 1 { format!("run {first}") } else { format!("{count} runs, the first is {first}") };
-        writeln!(said, "         {runs}: {reason}").expect("memory takes all text");
+
+    /// The number of shards of the whole sweep.
+    fn all_shards(&self) -> usize {
+        whole(&self.recipe, "runs").div_ceil(whole(&self.recipe, "shard").max(1))
     }
-    Ok(said + &inputs(&recipe) + &samples(&recipe))
+
+    /// The same for programs, with the recipe.
+    ///
+    /// # Panics
+    /// Never: a recipe is a table of TOML.
+    #[must_use]
+    pub fn json(&self) -> serde_json::Value {
+        let reason = |(reason, runs, first): &(String, usize, i64)| serde_json::json!({ "reason": reason, "runs": runs, "first": first });
+        serde_json::json!({
+            "recipe": serde_json::to_value(&self.recipe).expect("TOML has text keys only"),
+            "runs": self.runs, "failed": self.failed, "reasons": self.reasons.iter().map(reason).collect::<Vec<_>>(),
+            "shards": self.shards, "all_shards": self.all_shards(),
+        })
+    }
+}
+
+impl Display for Progress {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let Self { recipe, shards, runs, failed, reasons } = self;
+        let text = |name: &str| recipe.get(name).map_or_else(String::new, |value| value.to_string().replace('"', ""));
+        writeln!(f, "sweep    {} {}, scene {}", text("program"), text("version"), text("scene"))?;
+        writeln!(f, "swept    {}", text("swept").trim_matches(['[', ']']))?;
+        writeln!(f, "runs     {runs} of {} in {shards} of {} shards", text("runs"), self.all_shards())?;
+        writeln!(f, "failed   {failed}")?;
+        for (reason, count, first) in reasons {
+            let runs = if *count == 1 { format!("run {first}") } else { format!("{count} runs, the first is {first}") };
+            writeln!(f, "         {runs}: {reason}")?;
+        }
+        f.write_str(&(inputs(recipe) + &samples(recipe)))
+    }
 }
 
 /// Writes the rows of all shards that are there as CSV; every number in the shortest form that reads back to the same
