@@ -104,6 +104,8 @@ mod sentence;
 #[doc(hidden)]
 #[path = "private.rs"]
 pub mod __private;
+#[cfg(all(doctest, feature = "macros"))]
+mod language;
 mod model;
 mod solve;
 

@@ -182,9 +182,11 @@ fn labels_of_the_language_lead_to_headings_in_rustdoc() {
             in_rustdoc.keys().find(|label| text.contains(&format!("[{label}]")) && !defined.contains_key(*label));
         assert_eq!(lacking, None, "in {:?}", text.lines().next());
     }
+    let tested = read(&root().join("bg-model/src/language.rs"));
     for path in files(&package.join("docs/language")) {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         assert!(source.contains(&format!("include_str!(\"../docs/language/{name}\")")), "{name} is not in rustdoc");
+        assert!(tested.contains(&format!("docs/language/{name}\")")), "the examples of {name} are not tested");
     }
 }
 
