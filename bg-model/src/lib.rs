@@ -110,7 +110,7 @@ mod model;
 mod solve;
 
 pub use model::{
-    assembly, capability, clock, description, drawing, dynamics, holding, input, iteration, linear, mechanism,
+    assembly, capability, clock, delay, description, drawing, dynamics, holding, input, iteration, linear, mechanism,
     parameters, requirement, sampled, scalar, series, standing, start, system,
 };
 #[cfg(feature = "std")]

@@ -152,7 +152,7 @@ const GRAPH: [(&str, &str); 45] = [
     ("BG0342", "every ▸1 ms { } 1 j: translation; I m = 2; Se f = 1; f -> j -> m;"),
     ("BG0343", "every 1 ms { sample a: 1 = 2; } 1 j: translation; I m = 2; MSe f = ▸a.last; f -> j -> m;"),
     ("BG0344", "every 1 ms { sample ▸a: 1 = a + 1; } 1 j: translation; I m = 2; MSe f = a; f -> j -> m;"),
-    ("BG0345", "1 j: translation; I m = 2; MSe f = ▸delay(j.flow, 2 ms) * 1 N*s/m; f -> j -> m;"),
+    ("BG0345", "1 j: translation; I m = 2 start ▸delay(1, 2 ms); j -> m;"),
     ("BG0332", "Se f = 1; 1 j: translation; I m = 2; C ▸s(effort e) = e; f -> j -> m; j -> s;"),
     ("BG0333", "graph ▸G { param a: 1 = 2; }"),
 ];

@@ -13,6 +13,7 @@ use bg_compiler::program::{
     SecondOrderPrograms, Starting, deferred, reversed,
 };
 use bg_compiler::tables::{self, Counted, EliminationTable, Loop};
+use bg_model::delay::States;
 use bg_model::linear::Sparsity;
 use bg_model::linear::table::Slot;
 
@@ -32,6 +33,7 @@ pub struct Blueprint {
     pub(crate) first_branches: Vec<bool>,
     pub(crate) memories: Vec<usize>,
     pub(crate) clocks: Vec<usize>,
+    pub(crate) delays: &'static [States],
     pub(crate) loops: Vec<Loop>,
     pub(crate) elimination: Deferred<Elimination>,
 }
@@ -142,6 +144,7 @@ impl Blueprint {
             second: tables.second,
             first_branches: tables.first_branches,
             memories: tables.memories,
+            delays: crate::statics::delays(&tables.delays),
             clocks: tables.clocks,
             loops: tables.loops,
         }

@@ -10,6 +10,7 @@ use std::rc::Rc;
 use bg_model::assembly::AssemblyError;
 use bg_model::capability::{Operations, SeriesSize};
 use bg_model::clock::{self, Clock};
+use bg_model::delay::{self, Delay};
 use bg_model::description::{Description, StateInfo};
 use bg_model::drawing;
 use bg_model::dynamics::{Dynamics, Machine, Rates, Swept};
@@ -30,6 +31,14 @@ use crate::interpreted::{Interpreted, Moment, of_parameters};
 use crate::series::Expansion;
 
 impl<S: Scalar> Interpreted<S> {
+    /// The clocks, those of delays among them.
+    fn all_clocks(&self) -> Vec<Clock<S>> {
+        let Some(program) = &self.programs().clocks else { return Vec::new() };
+        clock::listed(&self.blueprint.clocks, |times| {
+            of_parameters(program, &self.values, &[], Some(&self.decided), times);
+        })
+    }
+
     /// Projects the states of the pose.
     pub(crate) fn pose(&self, t: S, negative: &[S::Switch], x: &mut [S]) {
         self.moved((&self.blueprint.projected, &self.programs().project, &self.rows.project), t, negative, x);
@@ -81,10 +90,11 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn clocks(&self) -> Vec<Clock<S>> {
-        let Some(program) = &self.programs().clocks else { return Vec::new() };
-        clock::listed(&self.blueprint.clocks, |times| {
-            of_parameters(program, &self.values, &[], Some(&self.decided), times);
-        })
+        delay::without(self.all_clocks(), self.blueprint.delays)
+    }
+
+    fn delays(&self) -> Vec<Delay<S>> {
+        delay::listed(&self.all_clocks(), self.blueprint.delays)
     }
 
     fn first_branches(&self) -> Vec<bool> {

@@ -6,6 +6,7 @@
 use bg_compiler::source::drawing as look;
 use bg_compiler::tables::{self, Place, Tables};
 use bg_model::assembly::Gap;
+use bg_model::delay::{Signal, States};
 use bg_model::description::{
     BondEnd, BondInfo, Description, ElementInfo, InputInfo, OperationCount, OutputInfo, ParameterInfo, PartInfo, Range,
     StateInfo, StateKind, SwitchInfo,
@@ -47,6 +48,15 @@ pub fn statics(of: &Tables) -> Statics {
             unknowns => Sparsity::Bordered { places: places(&of.jacobian), unknowns },
         },
     }
+}
+
+/// Where the states of delays are.
+pub fn delays(of: &[tables::Delay]) -> &'static [States] {
+    let signal = |(coefficients, is_given): &(Vec<usize>, bool)| Signal {
+        coefficients: each(coefficients, |&state| state),
+        is_given: *is_given,
+    };
+    each(of, |of| States { clock: of.clock, window: of.window, signals: each(&of.signals, signal) })
 }
 
 /// A description.

@@ -3,6 +3,8 @@
 pub mod assembly;
 pub mod capability;
 pub mod clock;
+pub mod delay;
+pub(crate) mod delayed;
 pub mod description;
 pub mod drawing;
 pub mod dynamics;

@@ -10,6 +10,7 @@ use alloc::vec::Vec;
 
 use crate::model::assembly::{AssemblyError, Closed, Gap, close};
 use crate::model::clock;
+use crate::model::delayed;
 use crate::model::dynamics::{Dynamics, branches};
 use crate::model::holding::Redundancy;
 use crate::model::nearest::lifted;
@@ -127,6 +128,7 @@ fn pose<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Vec
 /// The pose does not close, or the velocities do not fit.
 pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut [S]) -> Result<S, AssemblyError> {
     let lost = assembled(of, system, x)?;
+    delayed::begin(system, 0.0, &branches(system, 0.0, x), x);
     let clocks = system.clocks();
     if clock::is_due(&clocks, 0.0) {
         sampled::compute_due(system, &clocks, 0.0, &branches(system, 0.0, x), x);

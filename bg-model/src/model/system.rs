@@ -8,6 +8,7 @@ use nalgebra::SVector;
 
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::{Absent, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
+use crate::model::delay::States;
 use crate::model::description::Description;
 use crate::model::holding::Redundancy;
 use crate::model::origin::Origin;
@@ -73,6 +74,12 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
 
     /// Writes of each clock the time from one instant to the next, s, above 0, and its first instant, s.
     fn instants(&self, _instants: &mut [S]) {}
+
+    /// The delays of signals. Their clocks are among [`System::clocks`], with the time of the delay as the period: in
+    /// their negative branches [`System::project`] reads the signals into the first of their states. None by default.
+    fn delays(&self) -> &'static [States] {
+        &[]
+    }
 
     /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal
     /// orientations, closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before

@@ -81,6 +81,12 @@ pub enum Unfit {
          short here; give it a smooth law, such as f * tanh(v / v0)"
     )]
     Sticking,
+    /// A signal is delayed at any time: its past takes room that is not known before the run.
+    #[error(
+        "a delay of a signal at any time keeps the past, which has no room of a fixed size here; delay a sample in a block \
+         `every` in its place"
+    )]
+    Delays,
 }
 
 debug_is_display!(Unfit);
@@ -112,6 +118,9 @@ impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G
         }
         if system.first_branches().contains(&true) {
             return Err(Unfit::Sticking);
+        }
+        if !system.delays().is_empty() {
+            return Err(Unfit::Delays);
         }
         let mut run = Self { t0, step, steps: 0, x: *start, negative: [false; G] };
         run.negative = run.branches(system, &run.x);

@@ -6,6 +6,7 @@ mod ball_on_plate;
 mod bricard;
 mod closed_loops;
 mod controllers;
+mod delays;
 mod double_wishbone;
 mod governor;
 mod hand;

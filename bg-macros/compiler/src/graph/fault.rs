@@ -57,7 +57,7 @@ pub enum GraphFault {
     EveryEmpty,
     LastOutside { sample: String },
     SampleCycle { name: String },
-    DelayOutside,
+    DelayAtStart,
     DelayTime { clock: String, most: f64 },
 }
 
@@ -115,7 +115,7 @@ impl Explain for GraphFault {
             F::EveryEmpty => "BG0342",
             F::LastOutside { .. } => "BG0343",
             F::SampleCycle { .. } => "BG0344",
-            F::DelayOutside | F::DelayTime { .. } => "BG0345",
+            F::DelayAtStart | F::DelayTime { .. } => "BG0345",
         }
     }
 
@@ -197,7 +197,7 @@ impl Explain for GraphFault {
                 format!("`{sample}.last` is what was held before an instant, which only a block `every` knows")
             }
             F::SampleCycle { name } => format!("the sample `{name}` depends on its own value at the same instant"),
-            F::DelayOutside => "a `delay` needs the instants of a clock, at which it hands its signal on".to_owned(),
+            F::DelayAtStart => "a start has no past, so there is nothing that a `delay` could give".to_owned(),
             F::DelayTime { clock, most } => {
                 format!(
                     "the time of a `delay` is 1 to {most} times that of its block, `{clock}`, both written as numbers"
@@ -272,8 +272,8 @@ impl Explain for GraphFault {
             F::EveryEmpty => "write `sample NAME: UNIT = VALUE;` into its braces".to_owned(),
             F::LastOutside { sample } => format!("write `{sample}`, which is held until the next instant"),
             F::SampleCycle { name } => format!("write `{name}.last` for its value before the instant"),
-            F::DelayOutside => {
-                "write `every 1 ms { sample NAME: UNIT = delay(SIGNAL, 20 ms); }` and use NAME here".to_owned()
+            F::DelayAtStart => {
+                "write the value that the signal has before the run; `delay(SIGNAL, TIME, START)` takes it too".to_owned()
             }
             F::DelayTime { .. } => "write a multiple of it, such as `delay(x, 20 ms)` in `every 1 ms`".to_owned(),
             F::UnitOrName { symbol, .. } => {

@@ -75,6 +75,8 @@ pub struct BondGraph {
     pub integrals: Vec<Integral>,
     /// What computes samples.
     pub clocks: Vec<Clock>,
+    /// The delays of signals at any time, one for each time.
+    pub delays: Vec<Delay>,
     /// What the mechanism looks like.
     pub drawing: Drawing<Term>,
 }
@@ -363,7 +365,7 @@ pub struct Integral {
     pub follows: Option<usize>,
 }
 
-/// A clock, which computes samples.
+/// A clock, which computes samples, or what reads the signals of a delay.
 #[derive(Clone, Debug)]
 pub struct Clock {
     /// As written, without its samples.
@@ -372,6 +374,30 @@ pub struct Clock {
     pub period: usize,
     /// The `let` of the first instant, s.
     pub first: usize,
+    /// Of that of a delay, whose period is the time of that: the delay's index. The run says when it has an instant.
+    pub delay: Option<usize>,
+}
+
+/// The delays of signals by one time. All indices are those of [`BondGraph::integrals`], but where it is said.
+#[derive(Clone, Debug)]
+pub struct Delay {
+    /// The index of the clock that reads the signals.
+    pub clock: usize,
+    /// The states of the times from which and until which the polynomials hold, s.
+    pub window: [usize; 2],
+    /// The index of the `let` of the place in the window, from -1 to 1.
+    pub place: usize,
+    /// The signals.
+    pub signals: Vec<DelayedSignal>,
+}
+
+/// A delayed signal.
+#[derive(Clone, Debug)]
+pub struct DelayedSignal {
+    /// The states of the coefficients of its polynomial in the place in the window, from that of power 0 on.
+    pub coefficients: Vec<usize>,
+    /// Whether it is given what the signal was before the run.
+    pub is_given: bool,
 }
 
 impl Turn {

@@ -143,6 +143,8 @@ impl<'a> Types<'a> {
                 // Its value may depend on what it was before.
                 return (Shape::Scalar, Quantity::Known(unit.dimension));
             }
+            // What a delay of itself is, is found where this is.
+            self.lets.borrow_mut()[index] = Some((Shape::Scalar, Quantity::Unknown));
             let (found, quantity) = self.silently(&definition.value, None);
             let shape = definition.clause.as_ref().map_or(found, |clause| Shape::of_components(clause.components));
             let typed = (shape, definition.declared.map_or(quantity, |unit| Quantity::Known(unit.dimension)));

@@ -22,9 +22,10 @@ pub use start::{Gap, Requirement, Start, requirements, start};
 use std::ops::Range;
 
 use crate::expr::Id;
+use crate::graph::DelayedSignal;
 use crate::pipeline::Compiled;
 use crate::program::{SeriesSize, series_size};
-use crate::system::equations::{Iteration, Origin};
+use crate::system::equations::{Iteration, Origin, StateEquations};
 
 /// What is known of a model beside its programs.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,8 +54,10 @@ pub struct Tables {
     pub first_branches: Vec<bool>,
     /// The states that keep what memories have followed and what is held of samples.
     pub memories: Vec<usize>,
-    /// The switches of clocks.
+    /// The switches of clocks, those of delays among them.
     pub clocks: Vec<usize>,
+    /// The delays of signals, one for each time.
+    pub delays: Vec<Delay>,
     /// The laws that can give what is not finite, each the element's kind and name, in the order of the program.
     pub fallible: Vec<(&'static str, String)>,
     /// The joints of the loops whose pivots nothing shows to keep away from zero, in the order of the program.
@@ -65,6 +68,17 @@ pub struct Tables {
     pub jacobian: Vec<(usize, usize)>,
     /// How many unknowns of loops border it.
     pub unknowns: usize,
+}
+
+/// The delays of signals by one time.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Delay {
+    /// The index of its clock among those of the model.
+    pub clock: usize,
+    /// The states of the times from which and until which its polynomials hold.
+    pub window: [usize; 2],
+    /// The states of the coefficients of each polynomial, and whether it is given what the signal was before the run.
+    pub signals: Vec<(Vec<usize>, bool)>,
 }
 
 /// Unknowns of algebraic loops that are solved for together.
@@ -114,6 +128,7 @@ pub fn tables(model: &Compiled, counted: Counted) -> Tables {
             .filter(|&state| matches!(equations.states[state].origin, Origin::Memory(_)))
             .collect(),
         clocks: (0..equations.switches.len()).filter(|&k| equations.switches[k].clock.is_some()).collect(),
+        delays: delays(equations),
         first_branches: equations.switches.iter().map(|switch| switch.remembers).collect(),
         fallible: equations.fallible.iter().map(|law| (law.kind, law.element.clone())).collect(),
         turning: equations.turning().map(|law| law.element.clone()).collect(),
@@ -121,6 +136,22 @@ pub fn tables(model: &Compiled, counted: Counted) -> Tables {
         jacobian: model.jacobian.places(),
         unknowns: model.jacobian.unknowns.len(),
     }
+}
+
+/// The delays whose states something reads.
+fn delays(equations: &StateEquations) -> Vec<Delay> {
+    let own = |index: usize| {
+        equations.states.iter().position(|state| matches!(state.origin, Origin::Memory(of) if of == index))
+    };
+    let clocks = equations.switches.iter().filter_map(|switch| switch.clock).enumerate();
+    let delays = clocks.filter_map(|(clock, of)| {
+        let of = &equations.delays[of.delay?];
+        let [Some(from), Some(until)] = of.window.map(own) else { return None };
+        let signal = |of: &DelayedSignal| (of.coefficients.iter().filter_map(|&c| own(c)).collect(), of.is_given);
+        let signals = of.signals.iter().map(signal).filter(|(states, _): &(Vec<usize>, bool)| !states.is_empty());
+        Some(Delay { clock, window: [from, until], signals: signals.collect() })
+    });
+    delays.collect()
 }
 
 fn states(of: &[(usize, Id)]) -> Vec<usize> {

@@ -26,6 +26,7 @@ use crate::model::capability::SeriesSize;
 #[cfg(doc)]
 use crate::model::capability::{Elimination, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
 use crate::model::clock::Clock;
+use crate::model::delay::Delay;
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Sparsity, differences};
@@ -68,8 +69,13 @@ pub trait Dynamics<S: Scalar = f64> {
         Vec::new()
     }
 
-    /// [`System::clocks`] with [`System::instants`].
+    /// [`System::clocks`] with [`System::instants`], but those of delays.
     fn clocks(&self) -> Vec<Clock<S>> {
+        Vec::new()
+    }
+
+    /// [`System::delays`] with [`System::instants`]. None by default.
+    fn delays(&self) -> Vec<Delay<S>> {
         Vec::new()
     }
 

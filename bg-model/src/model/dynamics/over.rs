@@ -11,6 +11,7 @@ use super::{Dynamics, Machine};
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::{Impacts, Joints, Reversed, Storages};
 use crate::model::clock::{self, Clock};
+use crate::model::delay::{self, Delay};
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::scalar::Scalar;
@@ -20,6 +21,16 @@ use crate::model::system::{Model, Powers, System};
 /// are those that calculate with one number at a time, and hand over copies.
 #[derive(Clone, Copy, Debug)]
 pub struct Over<H, const N: usize, const G: usize, const M: usize>(pub H);
+
+impl<H: Deref, const N: usize, const G: usize, const M: usize> Over<H, N, G, M> {
+    /// The clocks, those of delays among them.
+    fn all_clocks<S: Scalar>(&self) -> Vec<Clock<S>>
+    where
+        H::Target: System<S, N, G> + Sized,
+    {
+        clock::listed(self.0.clocks(), |instants| self.0.instants(instants))
+    }
+}
 
 impl<S, H, const N: usize, const G: usize, const M: usize> Dynamics<S> for Over<H, N, G, M>
 where
@@ -48,7 +59,11 @@ where
     }
 
     fn clocks(&self) -> Vec<Clock<S>> {
-        clock::listed(self.0.clocks(), |instants| self.0.instants(instants))
+        delay::without(self.all_clocks(), self.0.delays())
+    }
+
+    fn delays(&self) -> Vec<Delay<S>> {
+        delay::listed(&self.all_clocks(), self.0.delays())
     }
 
     fn memories(&self) -> Vec<usize> {

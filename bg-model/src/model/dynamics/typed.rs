@@ -15,6 +15,7 @@ use crate::model::capability::{
     Elimination, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, SeriesSize, Storages,
 };
 use crate::model::clock::{self, Clock};
+use crate::model::delay::{self, Delay};
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Field, Sparsity, differences};
@@ -56,6 +57,11 @@ impl<H: Deref, const N: usize, const G: usize, const M: usize> Typed<H, N, G, M>
 where
     H::Target: System<f64, N, G> + Sized,
 {
+    /// The clocks, those of delays among them.
+    fn all_clocks(&self) -> Vec<Clock<f64>> {
+        clock::listed(self.of.clocks(), |instants| self.of.instants(instants))
+    }
+
     /// The elimination made for the system's sparsity.
     #[inline(always)]
     fn elimination(&self) -> Option<&impl Elimination<f64, N>> {
@@ -97,7 +103,11 @@ where
     }
 
     fn clocks(&self) -> Vec<Clock<f64>> {
-        clock::listed(self.of.clocks(), |instants| self.of.instants(instants))
+        delay::without(self.all_clocks(), self.of.delays())
+    }
+
+    fn delays(&self) -> Vec<Delay<f64>> {
+        delay::listed(&self.all_clocks(), self.of.delays())
     }
 
     fn memories(&self) -> Vec<usize> {

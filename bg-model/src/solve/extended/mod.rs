@@ -123,6 +123,9 @@ pub fn integrate<S: Scalar<Switch = bool>>(
     if system.stops().is_some() {
         return Err(Fault::BadInput("stops with a restitution make the state jump, which only runs in `f64` follow"));
     }
+    if !system.delays().is_empty() {
+        return Err(Fault::BadInput("a delay of a signal at any time has a past, which only runs in `f64` keep"));
+    }
     let mut run = Run::new(system, start, span, accuracy);
     run.begin();
     for &instant in instants {

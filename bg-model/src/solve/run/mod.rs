@@ -213,6 +213,9 @@ fn beginning(model: &dyn Machine, start: Option<&State>) -> Result<(f64, Beginni
         let x = model.start()?;
         return Ok((0.0, Beginning::at(DVector::from_vec(x))));
     };
+    if !model.delays().is_empty() {
+        return Err(StateError::Delays(model.description().name.to_owned()).into());
+    }
     let Beginning { x, largest, negative } = state.beginning(model.description())?;
     let standing = Standing::new(model, state.t, largest.as_slice(), CLOSE);
     let negative = negative.map(|negative| standing.possible(x.as_slice(), negative));

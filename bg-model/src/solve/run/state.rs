@@ -81,6 +81,12 @@ pub enum StateError {
         /// Its value.
         value: f64,
     },
+    /// The model delays signals, whose past is in no saved state.
+    #[error(
+        "`{0}` delays a signal, and this state does not have what the signal was before; make one run from the start \
+         to the end"
+    )]
+    Delays(String),
     /// No saved state at all.
     #[error("this is no saved state: {0}")]
     NoState(String),

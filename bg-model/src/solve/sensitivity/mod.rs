@@ -67,6 +67,10 @@ use step::Stepper;
 /// own steps, and the slopes would no longer be the derivatives of these.
 const PART: f64 = 1.0 / 1024.0;
 
+/// What is to be done where a model delays signals.
+const DELAYS: &str = "what a run depends on then has a past of its own, which derivatives along a run do not have; take \
+                      differences of runs, or delay samples in a block `every`";
+
 /// What a run is differentiated by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
@@ -181,6 +185,12 @@ pub enum SensitivityError {
         /// Time, s.
         t: f64,
     },
+    /// The model delays a signal.
+    #[error("`{model}` delays a signal: {}", DELAYS)]
+    Delays {
+        /// The model.
+        model: &'static str,
+    },
     /// An objective asks for an instant at which there is no run.
     #[error("the objective asks for t = {t:?} s, and the run is from 0 to {t_end:?} s; ask for an instant in it")]
     OutsideOfRun {
@@ -246,7 +256,11 @@ pub fn sensitivities_of(
     directions: &[Direction],
     outputs: &[usize],
 ) -> Result<Sensitivities, SensitivityError> {
-    let following = Following { request, directions, outputs, values, plain: model.tuned(values)? };
+    let plain = model.tuned(values)?;
+    if !plain.delays().is_empty() {
+        return Err(SensitivityError::Delays { model: model.description().name });
+    }
+    let following = Following { request, directions, outputs, values, plain };
     // What has no more directions than fit into a vector of AVX2 gains nothing by wider ones.
     #[cfg(target_arch = "x86_64")]
     if directions.len() > Avx2::LANES && Avx512::is_at_hand() {

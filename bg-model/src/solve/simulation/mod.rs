@@ -5,6 +5,7 @@
 //! instants only ([`crate::system::System`]); a step never runs over such an instant.
 
 mod cause;
+mod history;
 #[cfg(feature = "std")]
 pub(crate) mod lanes;
 mod observer;

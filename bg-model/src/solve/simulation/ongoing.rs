@@ -11,6 +11,7 @@ use alloc::vec::Vec;
 
 use nalgebra::DVector;
 
+use super::history::History;
 use super::observer::Observer;
 use super::rounding::RoundingMonitor;
 use super::run::Run;
@@ -64,6 +65,8 @@ pub struct Ongoing {
     controller: Option<StepSizeController>,
     /// The size of the next step, s, where it is known.
     step: Option<f64>,
+    /// The past of signals that the system delays, where it does.
+    history: Option<History>,
     statistics: Statistics,
 }
 
@@ -100,6 +103,7 @@ impl Ongoing {
             largest,
             controller: None,
             step: None,
+            history: None,
             statistics,
         }
     }
@@ -185,6 +189,7 @@ impl Ongoing {
         let stepper = Stepper::new(system, method, scale, self.start.clone());
         let mut run = Run::new(stepper, None, control, span, settings);
         run.stepper.statistics = self.statistics;
+        run.history = self.history.take().or(run.history);
         if let Some(mut sizes) = self.sizes.take() {
             sizes.go_on(&run.sizes, &mut run.stepper.scale);
             run.sizes = sizes;
@@ -207,7 +212,8 @@ impl Ongoing {
                 run.controller.go_on(span);
                 run.advance_to_end(observer)
             });
-        let Run { stepper, controller, monitor, rounding, sizes, .. } = run;
+        let Run { stepper, controller, monitor, rounding, sizes, history, .. } = run;
+        self.history = history;
         self.sizes = Some(sizes);
         (self.start, self.negative, self.monitor, self.rounding) = (stepper.start, stepper.negative, monitor, rounding);
         self.statistics = stepper.statistics;

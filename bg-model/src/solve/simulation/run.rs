@@ -6,6 +6,7 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::history::History;
 use super::observer::{Inside, Observer, Switching};
 use super::rounding::RoundingMonitor;
 use super::sampling::Sampling;
@@ -13,6 +14,7 @@ use super::settings::{Settings, Span};
 use super::sizes::SizeMonitor;
 use super::step_size::{self, StepSizeController};
 use crate::model::clock::{self, Clock};
+use crate::model::dynamics::Dynamics;
 #[cfg(feature = "std")]
 use crate::model::reactions::LoopsInLanes;
 use crate::model::reactions::{After, Broken, Collision, EndMonitor, LoopMonitor};
@@ -56,6 +58,8 @@ pub(crate) struct Run<'a> {
     pub rounding: Option<RoundingMonitor>,
     /// What computes samples of the model.
     clocks: Vec<Clock>,
+    /// The past of signals that the model delays, where it does.
+    pub history: Option<History>,
     /// Room for the state at a sample.
     sample: Vec<f64>,
 }
@@ -79,7 +83,8 @@ impl<'a> Run<'a> {
     ) -> Self {
         let (system, states) = (stepper.system, stepper.system.states());
         let clocks = system.clocks();
-        let has_breaks = system.next_break(span.t0) < f64::INFINITY || !clocks.is_empty();
+        let history = History::of(system.delays(), settings.tolerances.relative);
+        let has_breaks = system.next_break(span.t0) < f64::INFINITY || !clocks.is_empty() || history.is_some();
         let (loops, ends) = (LoopMonitor::new(system), EndMonitor::new(system));
         let collision = system.stops().map(|stops| Collision::new(stops, system.kept_of_stops()));
         Self {
@@ -98,12 +103,16 @@ impl<'a> Run<'a> {
             sizes: SizeMonitor::new(&settings.tolerances, states, span.t0),
             rounding: RoundingMonitor::new(settings.tolerances.relative),
             clocks,
+            history,
             sample: vec![0.0; states],
         }
     }
 
     /// Finds the first step, the branches at the start, from those that are `known` on, and the condition's side.
     pub fn begin(&mut self, control: StepControl, settings: &Settings, known: Option<&[bool]>) -> Result<(), Cause> {
+        if let Some(history) = &mut self.history {
+            history.begin(self.stepper.start.t, self.stepper.start.x.as_slice());
+        }
         self.sizes.start(&mut self.stepper);
         let clear = self.monitor.begin_by_sign(&mut self.stepper, self.collision.as_mut(), known);
         self.stepper.evaluate_start();
@@ -175,6 +184,9 @@ impl<'a> Run<'a> {
     pub fn advance(&mut self, observer: &mut dyn Observer) -> Result<Option<Ended>, Cause> {
         if self.stepper.start.t >= self.span.t_end {
             return Ok(Some(Ended::AtEnd));
+        }
+        if self.open_window(observer)? {
+            return Ok(Some(self.end_at_start(observer)));
         }
         if self.sizes.is_at_rest(self.stepper.system) {
             let t = self.stepper.start.t;
@@ -307,9 +319,10 @@ impl<'a> Run<'a> {
     /// infinity where there is none.
     pub fn next_break(&self, t: f64) -> f64 {
         let latest = self.span.t_end - self.controller.least(self.span.t_end);
+        let window = self.history.as_ref().map_or(f64::INFINITY, History::until);
         let mut last = t;
         loop {
-            let next = self.stepper.system.next_break(last).min(clock::next(&self.clocks, last));
+            let next = self.stepper.system.next_break(last).min(clock::next(&self.clocks, last)).min(window);
             // A system that gives no later one has none.
             if next.is_nan() || next <= last || next >= latest {
                 return f64::INFINITY;
@@ -350,6 +363,7 @@ impl<'a> Run<'a> {
             let projections = self.projections();
             observer.inside(&mut Inside::of(&mut self.stepper, projections));
         }
+        self.record_history();
         if clock::is_due(&self.clocks, t) {
             while let Some(instant) = self.sampling.next_before(t - clock::rounding(t)) {
                 self.sample_inside(observer, instant);
@@ -394,17 +408,58 @@ impl<'a> Run<'a> {
         if !clock::is_due(&self.clocks, t) {
             return Ok(false);
         }
+        let mut reached = vec![false; self.stepper.negative.len()];
+        self.clocks.iter().for_each(|clock| reached[clock.switch] = clock.at(t).is_some());
+        if let Some(history) = &mut self.history {
+            history.jumps();
+        }
+        let clocks = self.clocks.clone();
+        self.rewrite(reached, observer, |system, negative, x| sampled::compute_due(system, &clocks, t, negative, x))?;
+        self.sample(observer, t);
+        self.condition_jumps()
+    }
+
+    /// Keeps the signals that are delayed during the step.
+    fn record_history(&mut self) {
+        let projections = self.projections();
+        let Self { stepper, history: Some(history), .. } = self else { return };
+        let is_kink = stepper.system.next_break(stepper.start.t) <= stepper.end.t;
+        history.record(stepper, projections);
+        if is_kink {
+            history.jumps();
+        }
+    }
+
+    /// Where the window in which delayed signals are known is over, opens another one. Gives whether the condition has
+    /// jumped through zero by that.
+    fn open_window(&mut self, observer: &mut dyn Observer) -> Result<bool, Cause> {
+        let t = self.stepper.start.t;
+        let Some(mut history) = self.history.take_if(|history| history.is_over(t)) else { return Ok(false) };
+        let none = vec![false; self.stepper.negative.len()];
+        let outcome = self.rewrite(none, observer, |_, _, x| history.open(t, x));
+        self.history = Some(history);
+        outcome?;
+        self.condition_jumps()
+    }
+
+    /// Lets `write` change what is held at the start of the next step; `reached` are the switches of clocks by which it
+    /// does.
+    fn rewrite(
+        &mut self,
+        reached: Vec<bool>,
+        observer: &mut dyn Observer,
+        write: impl FnOnce(&dyn Dynamics, &[bool], &mut [f64]),
+    ) -> Result<(), Cause> {
+        let t = self.stepper.start.t;
         let (before, negative_before) = (self.stepper.start.clone(), self.stepper.negative.clone());
         let none = vec![false; negative_before.len()];
         let Stepper { system, start, negative, .. } = &mut self.stepper;
-        sampled::compute_due(*system, &self.clocks, t, negative, start.x.as_mut_slice());
+        write(*system, negative, start.x.as_mut_slice());
         // Guards that this moves to the wrong side change their branches at once.
         self.monitor.settle(&mut self.stepper, none.clone(), self.controller.reach());
         self.check_start()?;
         self.stepper.end.become_that(self.stepper.start.borrowed());
         let (after, negative_after) = (self.stepper.start.clone(), self.stepper.negative.clone());
-        let mut reached = none.clone();
-        self.clocks.iter().for_each(|clock| reached[clock.switch] = clock.at(t).is_some());
         let changed = (0..none.len()).filter(|&switch| negative_after[switch] != negative_before[switch]);
         let changed: Vec<usize> = changed.collect();
         observer.switched(&Switching {
@@ -420,8 +475,7 @@ impl<'a> Run<'a> {
             self.stepper.statistics.events += 1;
             observer.event(t, self.stepper.start.x.as_slice(), switch, &self.stepper.negative);
         }
-        self.sample(observer, t);
-        self.condition_jumps()
+        Ok(())
     }
 
     /// Whether the condition has jumped through zero at the start of the next step.
@@ -493,6 +547,9 @@ impl<'a> Run<'a> {
         self.monitor.settle(&mut self.stepper, switches.clone(), self.controller.reach());
         self.check_start()?;
         if jumps || self.stepper.negative != before {
+            if let Some(history) = &mut self.history {
+                history.jumps();
+            }
             let mut left = vec![false; before.len()];
             let outcomes = self.collision.as_ref().filter(|_| jumps).into_iter().flat_map(Collision::outcomes);
             outcomes.for_each(|(k, after)| left[k] = after == After::Clear);

@@ -290,7 +290,7 @@ fn moved(scale: &Scale, memories: &[usize], before: &[f64], after: &[f64]) -> f6
 }
 
 /// A state with each number as the next rounding would have it, up or down.
-fn rounded_otherwise(x: &DVector<f64>) -> DVector<f64> {
+pub(crate) fn rounded_otherwise(x: &DVector<f64>) -> DVector<f64> {
     let otherwise = |i: usize| if i.count_ones().is_multiple_of(2) { 1.0 + f64::EPSILON } else { 1.0 - f64::EPSILON };
     DVector::from_fn(x.len(), |i, _| x[i] * otherwise(i))
 }

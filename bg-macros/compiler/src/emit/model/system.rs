@@ -8,6 +8,7 @@ use quote::{ToTokens, quote};
 use super::super::items::identifier;
 use super::{Emission, Shape};
 use crate::program::Routine;
+use crate::tables::Delay;
 
 /// The attribute of functions that are inlined where they are called, in release builds.
 #[derive(Clone, Copy)]
@@ -25,7 +26,7 @@ impl Emission<'_> {
         let (rate, guards, project) = (self.rate(), self.guards(), self.project());
         let (switch_name, not_finite, accessors) = (self.switch_name(), self.not_finite(), self.accessors());
         let (next_break, first_branches, iterations) = (self.next_break(), self.first_branches(), self.iterations());
-        let (memories, clocks) = (self.memories(), self.clocks());
+        let (memories, clocks, delays) = (self.memories(), self.clocks(), self.delays());
         let (runs_in_lanes, pivots) = (self.runs_in_lanes(), self.pivots());
         quote! {
             #iterations
@@ -37,6 +38,7 @@ impl Emission<'_> {
                 #first_branches
                 #memories
                 #clocks
+                #delays
                 #runs_in_lanes
                 fn state_name(&self, index: usize) -> &'static str {
                     DESCRIPTION.states.get(index).map_or("state", |state| state.name)
@@ -182,6 +184,23 @@ impl Emission<'_> {
                 }
                 fn instants(&self, instants: &mut [S]) {
                     Self::clocks(&self.values, &[], instants);
+                }
+            }
+        })
+    }
+
+    /// The delays of signals; nothing where there are none.
+    fn delays(&self) -> Option<TokenStream> {
+        let delays = self.tables.delays.iter().map(|Delay { clock, window: [from, until], signals }| {
+            let signals = signals.iter().map(|(coefficients, is_given)| {
+                quote! { ::bg_model::delay::Signal { coefficients: &[#(#coefficients),*], is_given: #is_given } }
+            });
+            quote! { ::bg_model::delay::States { clock: #clock, window: [#from, #until], signals: &[#(#signals),*] } }
+        });
+        (delays.len() > 0).then(|| {
+            quote! {
+                fn delays(&self) -> &'static [::bg_model::delay::States] {
+                    &[#(#delays),*]
                 }
             }
         })

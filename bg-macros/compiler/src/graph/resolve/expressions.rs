@@ -48,13 +48,19 @@ impl Resolver {
 
     fn call(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
         let span = function.span;
+        if function.text == DELAY {
+            return match place {
+                Place::Instant(clock) if !self.is_outside_of_blocks => {
+                    let terms = arguments.iter().map(|argument| self.term(argument, place)).collect();
+                    self.delayed_by_instants(function, terms, clock)
+                }
+                _ => self.delayed_at_any_time(function, arguments, place),
+            };
+        }
         let mut terms: Vec<Term> = arguments.iter().map(|argument| self.term(argument, place)).collect();
         let (table, order) = table_called(&function.text);
         if let Some(&Entity::Table(table)) = self.names.get(table) {
             return self.lookup(Lookup { table, order }, function, terms);
-        }
-        if function.text == DELAY {
-            return self.delayed(function, terms, place);
         }
         let builtin = Builtin::named(&function.text);
         let expected = match function.text.as_str() {

@@ -3,6 +3,7 @@
 //! In: one `ast::Graph` of bond-graph words. Out: a [`BondGraph`] that every later stage can trust.
 
 mod connect;
+mod delays;
 mod dependencies;
 mod expressions;
 mod quantity;
@@ -120,6 +121,8 @@ struct Resolver {
     written: Vec<Option<ast::Let>>,
     /// What `let`s that depend on samples are at an instant: by their indices, the index of another one.
     at_instants: BTreeMap<usize, usize>,
+    /// Whether what is read at an instant stands outside of blocks.
+    is_outside_of_blocks: bool,
     /// The `let`s that come after those that have names.
     more: Vec<Let>,
     /// Where each output is.
@@ -152,6 +155,7 @@ impl Resolver {
             ways: Vec::new(),
             integrals: Vec::new(),
             clocks: Vec::new(),
+            delays: Vec::new(),
             drawing: Drawing::default(),
         };
         Self {
@@ -166,6 +170,7 @@ impl Resolver {
             observed: Vec::new(),
             samples: Vec::new(),
             written: Vec::new(),
+            is_outside_of_blocks: false,
             at_instants: BTreeMap::new(),
             more: Vec::new(),
             outputs: BTreeMap::new(),

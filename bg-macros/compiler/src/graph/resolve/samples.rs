@@ -8,9 +8,9 @@ use std::collections::BTreeSet;
 use super::{Entity, Place, Resolver, Sampled};
 use crate::graph::term::{Reference, Term, TermKind};
 use crate::graph::units::Dimension;
-use crate::graph::{Clock, GraphFault, Integral, Let};
+use crate::graph::{Clock, GraphFault, Let};
 use crate::source::ast::{self, Expression, ExpressionKind, Name};
-use crate::source::clause::{Allowed, Clause};
+use crate::source::clause::Allowed;
 use crate::source::walk::each_name;
 
 /// The function that gives what a signal was some instants ago.
@@ -43,7 +43,7 @@ impl Resolver {
         let none = Expression { kind: ExpressionKind::Number(0.0), span: period.span };
         let period = self.time(period, "every", Allowed::Positive);
         let offset = self.time(offset.as_ref().unwrap_or(&none), "offset", Allowed::NotNegative);
-        self.graph.clocks.push(Clock { text, period, first: offset });
+        self.graph.clocks.push(Clock { text, period, first: offset, delay: None });
         for (own, sample) in (first..).zip(samples) {
             self.sample(sample, own, clock);
         }
@@ -51,12 +51,8 @@ impl Resolver {
 
     /// The `let` of a time of a clock, s.
     fn time(&mut self, value: &Expression, word: &'static str, allowed: Allowed) -> usize {
-        let second = ast::Unit::second(value.span);
-        let (declared, unit) = (Some(self.unit(&second)), Some(second.to_string()));
-        let clause = Some(Clause { allowed, ..Clause::new(format!("the time after `{word}`"), 1) });
-        let value = self.term(value, Place::Plain);
-        let name = Name::new(word, value.span);
-        self.graph.lets.push(Let { name, value, declared, unit, clause });
+        let time = self.time_of(value, word, format!("the time after `{word}`"), allowed);
+        self.graph.lets.push(time);
         self.graph.lets.len() - 1
     }
 
@@ -74,13 +70,9 @@ impl Resolver {
 
     /// `delay(SIGNAL, TIME)`, `delay(SIGNAL, TIME, START)` at an instant: what the signal was at the instant TIME before,
     /// and START where that is before the first one. A row of states hands the signal on, one at each instant.
-    pub(super) fn delayed(&mut self, function: &Name, mut terms: Vec<Term>, place: Place<'_>) -> Term {
+    pub(super) fn delayed_by_instants(&mut self, function: &Name, mut terms: Vec<Term>, clock: usize) -> Term {
         let span = function.span;
         let zero = Term { kind: TermKind::Number(0.0), span };
-        let Place::Instant(clock) = place else {
-            self.fault(span, &GraphFault::DelayOutside);
-            return zero;
-        };
         if !(2..=3).contains(&terms.len()) {
             let (function, found) = (function.text.clone(), terms.len());
             self.fault(span, &GraphFault::ArgumentCount { function, expected: 2, found });
@@ -102,28 +94,9 @@ impl Resolver {
         let first = self.graph.integrals.len();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole, and from 1 to the most")]
         for k in 1..=number as usize {
-            handed = self.handed_on(k, first, handed, start.clone(), clock);
+            handed = self.handed_on(format!("delay_{first}.ago_{k}"), handed, start.clone(), clock);
         }
         handed
-    }
-
-    /// State `k` of a delay, which becomes `from` at an instant; gives what it was before.
-    fn handed_on(&mut self, k: usize, first: usize, from: Term, start: Option<Term>, clock: usize) -> Term {
-        let (own, span) = (self.graph.integrals.len(), from.span);
-        let held = Term { kind: TermKind::Reference(Reference::Own(own)), span };
-        let value = Term { kind: TermKind::AtInstant(clock, Box::new([from, held.clone()])), span };
-        let name = Name::new(format!("delay_{first}.ago_{k}"), span);
-        let rate = Term { kind: TermKind::Number(0.0), span };
-        self.graph.integrals.push(Integral {
-            name: name.text.clone(),
-            value: rate,
-            dimension: Dimension::NONE,
-            declared: None,
-            start,
-            follows: Some(self.written.len() + self.more.len()),
-        });
-        self.more.push(Let { name, value, declared: None, unit: None, clause: None });
-        held
     }
 
     /// What stands for a quantity at an instant: for a `let` that depends on samples another one, with their values of
@@ -145,7 +118,9 @@ impl Resolver {
         self.more.push(Let { name, value: nothing, declared, unit: text, clause: None });
         // What is wrong with it is said where it stands.
         let faults = self.faults.len();
+        let outside = std::mem::replace(&mut self.is_outside_of_blocks, true);
         let value = self.term(&value, place);
+        self.is_outside_of_blocks = outside;
         self.faults.truncate(faults);
         self.more[at - self.written.len()].value = value;
         Reference::Let(at)

@@ -40,7 +40,7 @@ mod ways;
 
 use crate::expr::{Id, Pool, Symbol, text as expression_text};
 use crate::fault::Staged;
-use crate::graph::{CausalGraph, Input, Parameter};
+use crate::graph::{CausalGraph, Delay, Input, Parameter};
 use crate::system::inverse::InverseDynamics;
 use crate::system::requirements::Requirements;
 use independent::Kept;
@@ -89,6 +89,8 @@ pub struct StateEquations {
     pub projections: Vec<(usize, Id)>,
     /// Momenta with the expression that `project` gives them after that.
     pub settled: Vec<(usize, Id)>,
+    /// The delays of signals; their states are the memories of these indices.
+    pub delays: Vec<Delay>,
     /// What laws give that can make numbers which are not finite, in the order of evaluation.
     pub fallible: Vec<FallibleLaw>,
     /// The algebraic loops that are solved at run time.
@@ -191,6 +193,8 @@ pub struct Clock {
     pub period: Id,
     /// The first instant, of parameters.
     pub first: Id,
+    /// Of the clock that reads the signals of a delay, `period` long, the delay's index.
+    pub delay: Option<usize>,
 }
 
 /// The condition of a stop's switch.

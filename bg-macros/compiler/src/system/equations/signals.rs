@@ -175,6 +175,7 @@ impl<'a> Signals<'a> {
             supplied,
             dissipated,
             projections,
+            delays: self.graph.delays.clone(),
             settled: Vec::new(),
             fallible: self.fallible,
             iterations: Vec::new(),

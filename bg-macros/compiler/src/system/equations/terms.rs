@@ -219,9 +219,9 @@ impl Signals<'_> {
 
     /// The switch of a clock; clocks with the same instants share one.
     fn clock(&mut self, clock: usize) -> u32 {
-        let graph::Clock { text, period, first } = &self.graph.clocks[clock];
+        let &graph::Clock { ref text, ref period, ref first, delay } = &self.graph.clocks[clock];
         let [period, first] = [period, first].map(|index| self.named_expression(*index).0[0]);
-        let clock = Some(Clock { period, first });
+        let clock = Some(Clock { period, first, delay });
         let known = self.switches.iter().position(|switch| switch.clock == clock);
         let switch = known.unwrap_or_else(|| {
             let (element, condition, guard) = (self.owner.clone(), text.clone(), self.pool.number(1.0));

@@ -106,6 +106,9 @@ pub fn gradient_within(
         return Err(SensitivityError::OutsideOfRun { t, t_end: request.t_end });
     }
     let Description { name, .. } = model.description();
+    if !model.machine().delays().is_empty() {
+        return Err(SensitivityError::Delays { model: name });
+    }
     let Some(sweeps) = model.swept() else { return Err(SensitivityError::NoReverseSweep { model: name }) };
     let mut times: Vec<f64> = instants.iter().map(|&(t, ..)| t).collect();
     times.dedup();

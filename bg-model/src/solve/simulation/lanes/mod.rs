@@ -46,7 +46,8 @@ pub(crate) struct Job<'a, O> {
 /// Whether runs of `model` over `span` can be made side by side with these settings.
 pub(crate) fn fits(model: &dyn Machine, span: Span, settings: &Settings) -> bool {
     let each_step = settings.samples == Samples::Steps;
-    let has_breaks = model.next_break(span.t0) < f64::INFINITY || !model.clocks().is_empty();
+    let has_breaks =
+        model.next_break(span.t0) < f64::INFINITY || !model.clocks().is_empty() || !model.delays().is_empty();
     model.runs_in_lanes() && !has_breaks && !each_step && !super::rounding::may_matter(settings.tolerances.relative)
 }
 
