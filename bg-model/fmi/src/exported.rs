@@ -38,6 +38,12 @@ pub trait Described {
     /// How large each state is to be taken for, in its unit, above zero; none where the default start cannot be
     /// assembled.
     fn nominals(&self) -> Option<Vec<f64>>;
+
+    /// Whether it delays signals, whose past its own steps keep: a host's steps cannot move it on.
+    fn delays(&self) -> bool;
+
+    /// The switches of the clocks that compute samples, by their places in the description.
+    fn clocks(&self) -> Vec<usize>;
 }
 
 /// Keeps [`Exported`] to the types of this crate.
@@ -98,6 +104,14 @@ impl<Me: Mechanism> Described for Of<Me> {
     fn nominals(&self) -> Option<Vec<f64>> {
         AtDefaults::of::<Me>().nominals()
     }
+
+    fn delays(&self) -> bool {
+        AtDefaults::of::<Me>().delays()
+    }
+
+    fn clocks(&self) -> Vec<usize> {
+        AtDefaults::of::<Me>().clocks()
+    }
 }
 
 /// What makes a model at run time, with these values of its parameters, and these inputs.
@@ -148,6 +162,14 @@ impl Described for MadeBy {
 
     fn nominals(&self) -> Option<Vec<f64>> {
         self.at_defaults().nominals()
+    }
+
+    fn delays(&self) -> bool {
+        self.at_defaults().delays()
+    }
+
+    fn clocks(&self) -> Vec<usize> {
+        self.at_defaults().clocks()
     }
 }
 
@@ -202,5 +224,14 @@ impl Described for AtDefaults {
 
     fn nominals(&self) -> Option<Vec<f64>> {
         nominals_at_start(self.model.as_deref()?)
+    }
+
+    fn delays(&self) -> bool {
+        self.model.as_deref().is_some_and(|model| !model.delays().is_empty())
+    }
+
+    fn clocks(&self) -> Vec<usize> {
+        let clocks = self.model.as_deref().map(|model| model.clocks()).unwrap_or_default();
+        clocks.into_iter().map(|clock| clock.switch).collect()
     }
 }

@@ -82,6 +82,11 @@ impl Counts {
         self.rows().into_iter().flat_map(|(kind, count)| (0..count).map(kind))
     }
 
+    /// The value reference of a clock: they come after all other variables, in FMI 3.0 alone.
+    pub fn clock(&self, index: usize) -> usize {
+        self.rows().iter().map(|(_, count)| count).sum::<usize>() + index
+    }
+
     /// The value reference of a variable.
     pub fn reference(&self, kind: Kind) -> usize {
         let first = |row: usize| self.rows()[..row].iter().map(|(_, count)| count).sum::<usize>();
@@ -125,6 +130,18 @@ pub(crate) fn names(description: &Description) -> Vec<String> {
         Kind::Guard(index) => guards[index].clone(),
     };
     counts.all().map(name).collect()
+}
+
+/// The names of so many clocks beside all these.
+pub(crate) fn clock_names(names: &[String], clocks: usize) -> Vec<String> {
+    let name = |index: usize| {
+        let mut name = format!("clock[{}]", index + 1);
+        while names.contains(&name) {
+            name.push_str("_clock");
+        }
+        name
+    };
+    (0..clocks).map(name).collect()
 }
 
 /// The unit of a variable; none of a guard, whose law does not say.

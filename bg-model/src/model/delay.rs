@@ -1,9 +1,9 @@
 //! Delays: signals of a while ago, as polynomials among the states.
 //!
-//! In: a system's clocks with the states of its delays. Out: which delays there are. A delayed signal is a
-//! polynomial in the place in a window of time, -1 at its start, 1 at its end, which is not longer than the delay: there the signal of a
-//! while ago is known. The coefficients and both times are states of rate 0, so a rate depends on time and state only; a run writes them,
-//! window by window.
+//! In: a system's clocks with the states of its delays. Out: which delays there are. A delayed signal is a polynomial
+//! in the place in a window of time, -1 at its start, 1 at its end, which is not longer than the delay: there the
+//! signal of a while ago is known. The coefficients and both times are states of rate 0, so a rate depends on time and
+//! state only; a run writes them, window by window.
 
 use alloc::vec::Vec;
 

@@ -1,6 +1,7 @@
 //! What a system delays: read, and as it is at a start.
 //!
-//! In: a system with delays, its state. Out: its signals at that instant; the states of the delays where nothing has been yet.
+//! In: a system with delays, its state. Out: its signals at that instant; the states of the delays where nothing has
+//! been yet.
 
 use alloc::vec::Vec;
 
@@ -15,8 +16,8 @@ pub(crate) fn read<S: Scalar>(system: &dyn Dynamics<S>, delays: &[Delay<S>], t: 
     system.project(t, &switches, x);
 }
 
-/// Writes the states of the delays at a start at `t` (s): what the signals were before it is what is given, else what they
-/// are there.
+/// Writes the states of the delays at a start at `t` (s): what the signals were before it is what is given, else what
+/// they are there.
 pub(crate) fn begin<S: Scalar>(system: &dyn Dynamics<S>, t: f64, negative: &[bool], x: &mut [S]) {
     let delays = system.delays();
     if delays.is_empty() {

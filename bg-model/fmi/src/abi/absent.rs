@@ -1,5 +1,5 @@
-//! What these units do not have: variables of other types than Float64, clocks, scheduled execution, configuration,
-//! dependencies by call. The functions are there, since a library without one of them is none.
+//! What these units do not have: variables of other types than Float64, clocks that a host activates, scheduled
+//! execution, configuration, dependencies by call. The functions are there, since a library without one of them is none.
 
 use std::ffi::{c_char, c_void};
 
@@ -77,16 +77,15 @@ macro_rules! nothing {
 nothing! {
     fmi3GetBinary(_sizes: *mut usize, _values: *mut *const u8, _value_count: usize), "variables of the type Binary";
     fmi3SetBinary(_sizes: *const usize, _values: *const *const u8, _value_count: usize), "variables of the type Binary";
-    fmi3GetClock(_values: *mut bool), "clocks";
-    fmi3SetClock(_values: *const bool), "clocks";
-    fmi3GetIntervalDecimal(_intervals: *mut f64, _qualifiers: *mut i32), "clocks";
-    fmi3GetIntervalFraction(_counters: *mut u64, _resolutions: *mut u64, _qualifiers: *mut i32), "clocks";
-    fmi3GetShiftDecimal(_shifts: *mut f64), "clocks";
-    fmi3GetShiftFraction(_counters: *mut u64, _resolutions: *mut u64), "clocks";
-    fmi3SetIntervalDecimal(_intervals: *const f64), "clocks";
-    fmi3SetIntervalFraction(_counters: *const u64, _resolutions: *const u64), "clocks";
-    fmi3SetShiftDecimal(_shifts: *const f64), "clocks";
-    fmi3SetShiftFraction(_counters: *const u64, _resolutions: *const u64), "clocks";
+    fmi3SetClock(_values: *const bool), "clocks that a host activates";
+    fmi3GetIntervalDecimal(_intervals: *mut f64, _qualifiers: *mut i32), "clocks with an interval";
+    fmi3GetIntervalFraction(_counters: *mut u64, _resolutions: *mut u64, _qualifiers: *mut i32), "clocks with an interval";
+    fmi3GetShiftDecimal(_shifts: *mut f64), "clocks with an interval";
+    fmi3GetShiftFraction(_counters: *mut u64, _resolutions: *mut u64), "clocks with an interval";
+    fmi3SetIntervalDecimal(_intervals: *const f64), "clocks with an interval";
+    fmi3SetIntervalFraction(_counters: *const u64, _resolutions: *const u64), "clocks with an interval";
+    fmi3SetShiftDecimal(_shifts: *const f64), "clocks with an interval";
+    fmi3SetShiftFraction(_counters: *const u64, _resolutions: *const u64), "clocks with an interval";
     fmi3GetOutputDerivatives(_orders: *const i32, _values: *mut f64, _value_count: usize), "derivatives of outputs with respect to time";
 }
 

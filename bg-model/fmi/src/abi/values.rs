@@ -1,4 +1,4 @@
-//! Values of variables and their derivatives: all variables are of the type Float64.
+//! Values of variables and their derivatives: all variables but clocks are of the type Float64.
 
 use std::ffi::c_void;
 
@@ -17,6 +17,21 @@ pub unsafe extern "C" fn fmi3GetFloat64(
     unsafe {
         let (references, values) = (slice(references, reference_count), room(values, value_count));
         Handle::call(instance, |own| own.get(references, values))
+    }
+}
+
+/// Reads whether clocks tick.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetClock(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    values: *mut bool,
+) -> Status {
+    // SAFETY: an instance and arrays of this length, as `Handle::call` says.
+    unsafe {
+        let (references, values) = (slice(references, count), room(values, count));
+        Handle::call(instance, |own| own.ticks(references, values))
     }
 }
 

@@ -159,11 +159,18 @@ fn units(xml: &mut Xml, description: &'static Description) -> io::Result<()> {
                 let powers = BASES.into_iter().zip(exponents).filter(|(_, power)| **power != 0);
                 let factor = (*size != 1.0).then(|| ("factor", format!("{size:?}")));
                 let powers = powers.map(|(base, power)| (base, power.to_string()));
-                let attributes: Attributes<'_> = powers.chain(factor).collect();
-                empty(xml, "BaseUnit", &attributes)
+                let attributes: Attributes<'_> = powers.chain(factor.clone()).collect();
+                empty(xml, "BaseUnit", &attributes)?;
+                // Values are in the declared unit; that they are to be shown in it is said as well.
+                factor.map_or(Ok(()), |_| empty(xml, "DisplayUnit", &[("name", name.clone())]))
             })
         })
     })
+}
+
+/// That a saved state can be written as bytes, by this attribute: the past of a delay is not among them.
+fn serialized(model: &dyn Described, attribute: &'static str) -> Option<(&'static str, String)> {
+    (!model.delays()).then(|| (attribute, "true".to_owned()))
 }
 
 /// The limits of a range; an end that is not allowed itself is given all the same, the model refuses it.
@@ -198,7 +205,10 @@ fn variables(model: &dyn Described, number: fn(usize) -> usize) -> Vec<Variable>
         about.push(("causality", causality.to_owned()));
         about.push(("variability", variability.to_owned()));
         about.extend(initial.map(|initial| ("initial", initial.to_owned())));
-        let mut value: Attributes<'static> = unit(description, kind).map(|unit| ("unit", unit)).into_iter().collect();
+        let unit = unit(description, kind);
+        let shown = unit.clone().filter(|unit| in_bases(unit).is_some_and(|(_, size)| size != 1.0));
+        let mut value: Attributes<'static> = unit.map(|unit| ("unit", unit)).into_iter().collect();
+        value.extend(shown.map(|unit| ("displayUnit", unit)));
         match kind {
             Kind::Parameter(index) => {
                 let info = &description.parameters[index];

@@ -5,7 +5,9 @@
 
 use std::io;
 
-use super::{Packing, Variable, Xml, categories, dependencies, empty, experiment, head, initial, nested, units};
+use super::{
+    Packing, Variable, Xml, categories, dependencies, empty, experiment, head, initial, nested, serialized, units,
+};
 use crate::exported::Described;
 use crate::variables::{Counts, Kind};
 
@@ -20,13 +22,12 @@ pub(super) fn write(xml: &mut Xml, model: &dyn Described, packing: &Packing, tok
     head.push(("numberOfEventIndicators", Counts::of(description).guards.to_string()));
     nested(xml, "fmiModelDescription", &head, |xml| {
         let yes = |name: &'static str| (name, "true".to_owned());
-        let common = [
-            ("modelIdentifier", packing.identifier.clone()),
-            yes("canGetAndSetFMUstate"),
-            yes("canSerializeFMUstate"),
-            yes("providesDirectionalDerivative"),
-        ];
-        empty(xml, "ModelExchange", &common)?;
+        let mut common = vec![("modelIdentifier", packing.identifier.clone()), yes("canGetAndSetFMUstate")];
+        common.extend(serialized(model, "canSerializeFMUstate"));
+        common.push(yes("providesDirectionalDerivative"));
+        if !model.delays() {
+            empty(xml, "ModelExchange", &common)?;
+        }
         empty(xml, "CoSimulation", &[&common[..], &[yes("canHandleVariableCommunicationStepSize")]].concat())?;
         units(xml, description)?;
         categories(xml)?;

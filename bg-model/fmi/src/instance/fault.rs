@@ -80,6 +80,12 @@ pub enum Fault {
     /// Something that is no saved state of this model.
     #[error("this is no saved state of this model: {0}")]
     Saved(String),
+    /// A delay, whose past only the unit's own steps keep.
+    #[error(
+        "`{0}` delays a signal, and what the signal was is kept by the unit's own steps: load the unit for Co-Simulation, and go on \
+         from a state in memory, not from bytes"
+    )]
+    Delays(&'static str),
     /// Something that this unit does not have.
     #[error("{0}")]
     Absent(String),

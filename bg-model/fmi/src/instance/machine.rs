@@ -40,6 +40,8 @@ pub(crate) struct Stood {
     none: Vec<bool>,
     /// Up to when samples are computed, s.
     computed: f64,
+    /// Up to when clocks have ticked, s.
+    ticked: f64,
     /// The run from here on, once there is one.
     run: Option<Run>,
 }
@@ -93,7 +95,24 @@ impl Stood {
         let x = model.start().map_err(|fault| Fault::Start(fault.to_string()))?;
         let (size, largest) = (nominals(&*model, t, &x), x.iter().map(|x| x.abs()).collect());
         let none = vec![false; model.switches()];
-        Ok(Self { model, t, start: x.clone(), x, size, largest, negative: None, none, computed: t, run: None })
+        Ok(Self {
+            model,
+            t,
+            start: x.clone(),
+            x,
+            size,
+            largest,
+            negative: None,
+            none,
+            computed: t,
+            ticked: f64::NEG_INFINITY,
+            run: None,
+        })
+    }
+
+    /// Whether it delays signals, whose past the steps of its run keep.
+    pub fn delays(&self) -> bool {
+        !self.model.delays().is_empty()
     }
 
     /// Time, s.
@@ -207,6 +226,17 @@ impl Stood {
         Ok(self.x != before)
     }
 
+    /// Whether each clock has an instant at the time, which no update has come after; none where there are not so many.
+    pub fn ticks(&self) -> Vec<bool> {
+        let clocks = self.model.clocks();
+        clocks.iter().map(|clock| self.t > self.ticked && clock.at(self.t).is_some()).collect()
+    }
+
+    /// An update: clocks that have ticked do no more.
+    pub fn ends_ticks(&mut self) {
+        self.ticked = self.t;
+    }
+
     fn run_from_here(&self) -> Run {
         Run::at(self.t, &self.x, &self.largest, self.negative.as_deref())
     }
@@ -251,7 +281,7 @@ impl Stood {
     /// # Errors
     /// The model cannot stand there.
     pub fn place(&mut self, Place { t, x, largest, negative, step }: &Place) -> Result<(), Fault> {
-        (self.t, self.computed) = (*t, *t);
+        (self.t, self.computed, self.ticked) = (*t, *t, *t);
         self.set_states(x);
         raise(&mut self.largest, largest);
         self.negative.clone_from(negative);

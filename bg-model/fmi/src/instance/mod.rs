@@ -147,7 +147,10 @@ impl Instance {
     /// What keeps the model from its start.
     pub fn exit_initialization(&mut self) -> Result<(), Fault> {
         self.only("the end of the initialization", &[Mode::Initialization])?;
-        let rtol = self.rtol;
+        let (rtol, name) = (self.rtol, self.description().name);
+        if self.interface == Interface::ModelExchange && self.machine()?.delays() {
+            return Err(Fault::Delays(name));
+        }
         self.machine()?.settle(rtol)?;
         self.mode = match self.interface {
             Interface::ModelExchange => Mode::Event,
@@ -185,8 +188,26 @@ impl Instance {
         let rtol = self.rtol;
         let machine = self.machine()?;
         let states_changed = machine.settle(rtol)?;
+        machine.ends_ticks();
         let next_event = Some(machine.next_break()).filter(|t| t.is_finite());
         Ok(Update { states_changed, next_event })
+    }
+
+    /// Reads whether clocks tick at this event: whether its update computes their samples.
+    ///
+    /// # Errors
+    /// [`Fault::Mode`], [`Fault::Length`], [`Fault::Reference`], what keeps the model from its start.
+    pub fn ticks(&mut self, references: &[u32], values: &mut [bool]) -> Result<(), Fault> {
+        same_length("values", values.len(), references.len())?;
+        self.only("to ask whether a clock ticks", &[Mode::Initialization, Mode::Event])?;
+        let (first, is_event) = (self.counts.clock(0), self.mode == Mode::Event);
+        let ticks = self.machine()?.ticks();
+        for (value, &reference) in values.iter_mut().zip(references) {
+            let index = usize::try_from(reference).ok().and_then(|reference| reference.checked_sub(first));
+            let tick = index.and_then(|index| ticks.get(index)).ok_or(Fault::Reference(reference))?;
+            *value = *tick && is_event;
+        }
+        Ok(())
     }
 
     /// Goes on after an event.

@@ -104,6 +104,9 @@ impl Instance {
     /// [`Fault::Saved`]: a state is not finite.
     pub fn serialize(&self, snapshot: &Snapshot) -> Result<Vec<u8>, Fault> {
         self.check_own(&snapshot.token)?;
+        if snapshot.made.as_ref().is_some_and(|made| made.machine.delays()) {
+            return Err(Fault::Delays(self.description().name));
+        }
         let place = snapshot.made.as_ref().map(|made| Place {
             t: made.machine.time(),
             x: made.machine.states().to_vec(),

@@ -16,6 +16,7 @@ static BALL: Of<Ball> = Of::NEW;
 static SHAKER: Of<Shaker> = Of::NEW;
 static TIMED: Of<Timed> = Of::NEW;
 static SAMPLED: Of<Sampled> = Of::NEW;
+static LATE: Of<Late> = Of::NEW;
 
 bond_graph! {
     /// A mass whose force depends on an input, on a state and on the time.
@@ -40,6 +41,16 @@ bond_graph! {
         }
         MSe motor = torque; 1 shaft: rotation; I wheel = 0.5; R rub = 0.4; motor -> shaft -> wheel; shaft -> rub;
         observe { speed: rad/s = shaft.flow; torque: N*m = torque }
+    }
+}
+
+bond_graph! {
+    /// A speed that is turned up by what is seen 0.2 s late.
+    graph Late {
+        param late: ms = 200, above 0;
+        state speed: rpm = -delay(speed, late) / 0.1 s start 300;
+        1 shaft: rotation; MSf seen = speed; R rub = 0.4; seen -> shaft -> rub;
+        observe { speed: rpm = speed }
     }
 }
 
@@ -477,6 +488,69 @@ fn what_cannot_be_is_refused_in_words() {
     instance.step(0.0, 0.1).unwrap();
     instance.reset();
     instance.set(&[length], &[1.0]).unwrap();
+}
+
+/// Of FMI 3.0 a clock that the unit activates tells at which events samples are computed: from the start of the event to
+/// its update.
+#[test]
+fn clocks_tick_where_samples_are_computed() {
+    let text = model_description(&SAMPLED, &Packing::default());
+    let all = text.matches("valueReference=").count()
+        - text.split("<ModelStructure>").nth(1).unwrap().matches("valueReference=").count();
+    let clock = u32::try_from(all - 1).unwrap();
+    let written = format!(
+        "<Clock name=\"clock[1]\" valueReference=\"{clock}\" description=\"an instant of `every 30 ms offset 10 ms`\" \
+         causality=\"output\" intervalVariability=\"triggered\"/>"
+    );
+    assert!(text.contains(&written) && text.contains(&format!("<Output valueReference=\"{clock}\"/>")), "{text}");
+    assert!(!model_description(&SAMPLED, &Packing { version: Version::Two, ..Packing::default() }).contains("Clock"));
+    let mut instance = begun(&SAMPLED, Interface::ModelExchange, 1e-9);
+    let ticks = |instance: &mut Instance| {
+        let mut tick = [true];
+        instance.ticks(&[clock], &mut tick).map(|()| tick[0])
+    };
+    let mut found = Vec::new();
+    for _ in 0..4 {
+        found.push(ticks(&mut instance).unwrap());
+        let next = instance.update().unwrap().next_event.unwrap();
+        assert!(!ticks(&mut instance).unwrap());
+        instance.enter_continuous().unwrap();
+        assert!(ticks(&mut instance).is_err());
+        instance.set_time(next).unwrap();
+        instance.enter_event().unwrap();
+    }
+    assert_eq!(found, [false, true, true, true]);
+    assert!(instance.ticks(&[clock + 1], &mut [false]).is_err());
+}
+
+#[test]
+fn a_delay_is_for_co_simulation() {
+    let mut instance = begun(&LATE, Interface::CoSimulation, 1e-10);
+    for k in 0..10 {
+        instance.step(0.1 * f64::from(k), 0.1).unwrap();
+    }
+    let found = get(&mut instance, &LATE, Kind::Output(0));
+    let run = own(&Late::new(Default::default()).unwrap(), 1.0, 1e-11, "speed");
+    assert!((found - run).abs() < 1e-6 && run.abs() > 1.0, "{found} {run}");
+    let kept = instance.save();
+    instance.step(1.0, 0.3).unwrap();
+    let first = get(&mut instance, &LATE, Kind::Output(0));
+    instance.restore(&kept).unwrap();
+    instance.step(1.0, 0.3).unwrap();
+    assert_eq!(get(&mut instance, &LATE, Kind::Output(0)), first);
+    let refused = instance.serialize(&kept).unwrap_err().to_string();
+    assert!(refused.contains("`Late` delays a signal") && refused.contains("from a state in memory"), "{refused}");
+    let mut exchanged = Instance::new(&LATE, Interface::ModelExchange);
+    exchanged.enter_initialization(0.0, None).unwrap();
+    assert!(exchanged.exit_initialization().unwrap_err().to_string().contains("load the unit for Co-Simulation"));
+    for version in [Version::Three, Version::Two] {
+        let text = model_description(&LATE, &Packing { version, ..Packing::default() });
+        assert!(text.contains("<CoSimulation") && !text.contains("<ModelExchange"), "{text}");
+        assert!(
+            text.contains("<DisplayUnit name=\"rpm\"/>") && text.contains("unit=\"rpm\" displayUnit=\"rpm\""),
+            "{text}"
+        );
+    }
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! The past of the signals that a system delays, and the windows of time in which it knows them.
 //!
-//! In: the accepted steps of a run. Out: the states of its delays for the next window. Method of steps: a window is not longer than the
-//! shortest delay, so all that is asked for has been. Of each step the signals are kept as polynomials, of parts of the step where one of
-//! them is too coarse. In a window a delayed signal is one polynomial through its past, as exact as the tolerances ask; the window is
-//! shortened to that. It ends where the signal had a kink or a jump the delay before, so that steps end there: such an instant comes again
-//! after each delay, one derivative higher each time.
+//! In: the accepted steps of a run. Out: the states of its delays for the next window. Method of steps: a window is not
+//! longer than the shortest delay, so all that is asked for has been. Of each step the signals are kept as polynomials,
+//! of parts of the step where one of them is too coarse. In a window a delayed signal is one polynomial through its
+//! past, as exact as the tolerances ask; the window is shortened to that. It ends where the signal had a kink or a jump
+//! the delay before, so that steps end there: such an instant comes again after each delay, one derivative higher each
+//! time.
 
 use alloc::collections::VecDeque;
 use alloc::vec;
@@ -91,8 +92,8 @@ impl History {
         (!delays.is_empty()).then_some(Self { delays, pasts, relative, until: None, jump: Some(0), jump_at_end: None })
     }
 
-    /// The past of a run that starts at `t` (s) in state `x`, which has what the signals were before; one that goes on has an
-    /// instant at which something may have jumped.
+    /// The past of a run that starts at `t` (s) in state `x`, which has what the signals were before; one that goes on
+    /// has an instant at which something may have jumped.
     pub fn begin(&mut self, t: f64, x: &[f64]) {
         self.jump = Some(0);
         if self.until.is_some() {
@@ -321,8 +322,9 @@ fn evaluated(coefficients: &[f64], at: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| coefficient + at * sum)
 }
 
-/// The polynomial through values at [`nodes`], from the coefficient of power 0 on: that in Chebyshev's polynomials by a cosine transform,
-/// whose terms fall off, then in powers. Source: Trefethen, Approximation Theory and Approximation Practice, chapter 3.
+/// The polynomial through values at [`nodes`], from the coefficient of power 0 on: that in Chebyshev's polynomials by a
+/// cosine transform, whose terms fall off, then in powers. Source: Trefethen, Approximation Theory and Approximation
+/// Practice, chapter 3.
 fn polynomial(values: [f64; DEGREE + 1]) -> Vec<f64> {
     let n = DEGREE as f64;
     let half = |k: usize| if k == 0 || k == DEGREE { 0.5 } else { 1.0 };

@@ -1,9 +1,10 @@
 //! Delays: what a signal was some time ago, at any time.
 //!
-//! In: `delay(SIGNAL, TIME)` outside of blocks. Out: states that a run writes, and the polynomial of them that the delayed signal is. Over a
-//! window of time, which is not longer than the delay, the signal of a while ago is known; a run puts its polynomial there. To the equations
-//! the coefficients are states of rate 0, the first of which follows the signal at an instant and each other one the one before: what holds of
-//! all of them for any signal holds of the coefficients, too, which depend on it linearly.
+//! In: `delay(SIGNAL, TIME)` outside of blocks. Out: states that a run writes, and the polynomial of them that the
+//! delayed signal is. Over a window of time, which is not longer than the delay, the signal of a while ago is known; a
+//! run puts its polynomial there. To the equations the coefficients are states of rate 0, the first of which follows
+//! the signal at an instant and each other one the one before: what holds of all of them for any signal holds of the
+//! coefficients, too, which depend on it linearly.
 
 use proc_macro2::Span;
 
@@ -18,8 +19,8 @@ use crate::source::clause::Allowed;
 const DEGREE: usize = 12;
 
 impl Resolver {
-    /// `delay(SIGNAL, TIME)`, `delay(SIGNAL, TIME, START)`: what the signal was at the time TIME before, and START where that is before the
-    /// run, else what it is at the start.
+    /// `delay(SIGNAL, TIME)`, `delay(SIGNAL, TIME, START)`: what the signal was at the time TIME before, and START
+    /// where that is before the run, else what it is at the start.
     pub(super) fn delayed_at_any_time(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
         let span = function.span;
         let zero = Term { kind: TermKind::Number(0.0), span };
