@@ -39,6 +39,14 @@ impl Described for Panics {
     fn dependencies(&self) -> Option<Vec<Vec<usize>>> {
         None
     }
+
+    fn delays(&self) -> bool {
+        false
+    }
+
+    fn clocks(&self) -> Vec<usize> {
+        Vec::new()
+    }
 }
 
 impl sealed::Make for Panics {
