@@ -2,9 +2,11 @@
 
 use bg_model::dynamics::Machine;
 use bg_model::integrator::{AnyMethod, Dop853, Integrator, Radau5, Taylor, Tolerances};
+use bg_model::run::{Request, Simulation};
+use bg_model::sensitivity::{Direction, sensitivities};
 use bg_model::simulation::{EachSample, Ongoing, Samples, Settings, Span, drive};
 
-use super::text::{graphs, model, outputs};
+use super::text::{graphs, model, outputs, said};
 
 /// The outputs at these instants, and the steps.
 fn at(text: &str, mut method: AnyMethod, instants: &[f64]) -> (Vec<Vec<f64>>, u64) {
@@ -99,4 +101,59 @@ fn a_relay_that_sees_late() {
         let x = outputs(&*model, t, run.state(), run.negative())[0];
         assert!((x - triangle(t)).abs() < 1e-6, "{t}: {x} {}", triangle(t));
     }
+}
+
+/// A mistake, and what is said of it.
+const MISTAKES: [(&str, &str); 7] = [
+    ("delay(x)", "[BG0306] `delay` takes 2 argument(s), not 1; give it 2"),
+    ("delay(x, 0 s)", "[BG0701] the time of a `delay` is 0 s; it must be above 0; give a value above 0"),
+    (
+        "delay(x, 3 m)",
+        "[BG0316] `the time of a delay` is declared in one unit, but its value has another: the units s and m disagree",
+    ),
+    (
+        "delay(x, x / 1 m * 1 s)",
+        "[BG0323] the time of a `delay` depends on the state `x`; use parameters and numbers only",
+    ),
+    (
+        "delay(x, 1 s, 2 kg)",
+        "[BG0316] what a delay gives before the run has the first and should have the second: the units kg and m disagree",
+    ),
+    (
+        "delay(body.flow, 1 s)",
+        "[BG0314] the signal of a delay must be a scalar; this is a vector; write a scalar, or take a component",
+    ),
+    ("later(x, 1 s)", "[BG0304] there is no function `later`"),
+];
+
+#[test]
+fn beginners_are_told_what_to_do_about_delays() {
+    for (wrong, expected) in MISTAKES {
+        let text = format!(
+            "graph Late {{
+                state x: m = -{wrong} / 1 s start 1; 1 body[3]: translation; I mass = 1; body -> mass;
+                1 j: translation; I m = 1; MSe f = x * 1 N/m; f -> j -> m; observe {{ x: m = x }}
+            }}"
+        );
+        let found = said(&text);
+        assert!(found.contains(expected), "{wrong}: {found}");
+    }
+}
+
+/// What has no past says so.
+#[test]
+fn a_saved_state_and_derivatives_have_no_past() {
+    let text = "graph Late {
+        param late: s = 1, above 0; state x: m = -delay(x, late) / 1 s start 1;
+        1 j: translation; I m = 1; MSe f = x * 1 N/m; f -> j -> m; observe { x: m = x }
+    }";
+    let model = model(&graphs(text), "Late", &[]);
+    let request = Request { t_end: 0.5, ..Request::default() };
+    let run = Simulation::over(model.clone(), request.clone()).run().expect("a run");
+    let more = Simulation::over(model.clone(), Request { t_end: 1.5, ..request.clone() }).from(&run.last).run();
+    let Err(fault) = more else { panic!("it has no past") };
+    assert!(fault.to_string().starts_with("`Late` delays a signal, and this state does not have"), "{fault}");
+    let late = [Direction::of(Machine::description(&*model), "late").expect("a parameter")];
+    let fault = sensitivities(&*model, &request, &late).expect_err("no derivatives");
+    assert!(fault.to_string().starts_with("`Late` delays a signal: what a run depends on"), "{fault}");
 }

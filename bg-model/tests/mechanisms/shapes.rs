@@ -466,6 +466,46 @@ fn a_ball_that_slides_rolls_with_five_sevenths_of_its_speed() {
     }
 }
 
+/// A ball of 0.1 m and 0.7 kg with a spring of 1e6 N/m by which it sticks, on a plane that falls by `slope` (rad) along x.
+fn on_a_slope(inertia: f64, slope: f64, more: &str) -> String {
+    let (along, down) = (9.81 * slope.sin(), -9.81 * slope.cos());
+    let height = if more.contains("velocity") { 0.2 } else { 0.1 + 0.7 * down / 1e4 };
+    format!(
+        "graph Ball {{
+            gravity [{along:?}, {down:?}, 0]; ground {{ point floor = [0, 0, 0]; }}
+            body ball {{ mass 0.7; inertia [{inertia:?}, {inertia:?}, {inertia:?}]; start at [0, {height:?}, 0]; {more} }}
+            contact touch (ground.floor plane y -> ball sphere 0.1) {{ stiffness 1e4; damping 20; }}
+            friction rub on touch {{ coulomb 0.3; stiffness 1e6; viscous 500; }}
+            observe {{ x: m = ball.position.x; v: m/s = ball.velocity.x; rub: N = rub.effort.x;
+                total: J = stored_energy + integral(dissipated_power) - integral(supplied_power) }}
+        }}"
+    )
+}
+
+/// Below the slope 0.3 it stands and does not creep, above it slides with the friction that is said; a ball that can turn rolls.
+#[test]
+fn what_touches_in_space_sticks_by_a_spring() {
+    let found = after(&on_a_slope(1e12, 0.2, ""), &[0.1, 0.2]);
+    let held = 0.7 * 9.81 * 0.2_f64.sin();
+    for found in &found {
+        assert!(found[1].abs() < 1e-12 && (found[2] - held).abs() < 1e-9, "{found:?}");
+    }
+    assert!((found[0][0] - found[1][0]).abs() < 1e-12 && found[0][0] < 1e-5, "{found:?}");
+    // It slides with the friction and 500 N*s/m of oil: at the speed at which these hold it.
+    let found = after(&on_a_slope(1e12, 0.4, ""), &[0.1]).remove(0);
+    let friction = 0.3 * 0.7 * 9.81 * 0.4_f64.cos();
+    let speed = (0.7 * 9.81 * 0.4_f64.sin() - friction) / 500.0;
+    assert!((found[2] / friction - 1.0).abs() < 1e-8 && (found[1] / speed - 1.0).abs() < 1e-8, "{found:?} {speed}");
+    // Its spring gives way by less than a millionth of a metre.
+    let found = after(&on_a_slope(2.8e-3, 0.2, ""), &[0.0, 0.2]);
+    let rolls = 5.0 / 7.0 * 9.81 * 0.2_f64.sin();
+    assert!((found[1][1] / (0.2 * rolls) - 1.0).abs() < 1e-9, "{found:?} {rolls}");
+    assert!((found[1][0] - 0.02 * rolls).abs() < 5e-7 && (found[1][3] - found[0][3]).abs() < 1e-9, "{found:?}");
+    // Thrown askew it bounces, and rubs while it touches.
+    let found = after(&on_a_slope(2.8e-3, 0.0, "start velocity [2, 0, 1]; start spin [3, 0, 5];"), &[0.0, 0.2]);
+    assert!((found[1][3] - found[0][3]).abs() < 1e-8 && found[1][1] < 1.9, "{found:?}");
+}
+
 #[test]
 fn a_ball_on_a_ball_in_a_plane_is_a_disc_on_a_disc() {
     let start = "start at [0.01, -1e-5, 0]; start velocity [0.1, 0, 0]; start spin [0, 0, 2];";

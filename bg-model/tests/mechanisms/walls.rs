@@ -440,7 +440,7 @@ fn what_rests_on_a_rigid_shape_slides_along_it() {
 }
 
 /// Mistakes of beginners with shapes, play and friction: what is wrong, and the statement with it.
-const MISTAKES: [(&str, &str); 30] = [
+const MISTAKES: [(&str, &str); 35] = [
     ("segment: no length", "contact c (ground segment x -> ball circle 0.1) { stiffness 1e5; }"),
     ("segment: no axis", "contact c (ground segment 0.3 -> ball circle 0.1) { stiffness 1e5; }"),
     ("segment: along z", "contact c (ground segment z 0.3 -> ball circle 0.1) { stiffness 1e5; }"),
@@ -475,8 +475,28 @@ const MISTAKES: [(&str, &str); 30] = [
         "joint j: prismatic x (ground -> ball) { stiffness 1; damping 1; restitution 0.5; tilt stiffness 1; clearance 0.1 mm; }",
     ),
     (
-        "friction in space: no creep",
+        "friction in space: neither stiffness nor creep",
         "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; }",
+    ),
+    (
+        "friction in space: stiffness and creep",
+        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 1e6; creep 1e-3; }",
+    ),
+    (
+        "friction in space: a stiffness of 0",
+        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 0; }",
+    ),
+    (
+        "friction in space: a stiffness in N",
+        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 1e6 N; }",
+    ),
+    (
+        "friction in space: static without stribeck",
+        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; static 0.3; stiffness 1e6; }",
+    ),
+    (
+        "friction in the plane: a stiffness",
+        "contact c (ground line x -> ball circle 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 1e6; }",
     ),
     (
         "friction in space: a stop",

@@ -1061,6 +1061,8 @@ pub struct Friction {
     pub radius: Option<Expression>,
     /// `creep E;` the speed that regularises the law: it does not stick.
     pub creep: Option<Expression>,
+    /// `stiffness E;` of the spring by which it sticks where shapes touch in space, N/m.
+    pub stiffness: Option<Expression>,
 }
 
 impl Friction {
@@ -1077,6 +1079,7 @@ impl Friction {
             normal: None,
             radius: None,
             creep: None,
+            stiffness: None,
         }
     }
 }

@@ -538,6 +538,7 @@ impl Display for Friction {
         setting(&mut entries, "normal", self.normal.as_ref());
         setting(&mut entries, "radius", self.radius.as_ref());
         setting(&mut entries, "creep", self.creep.as_ref());
+        setting(&mut entries, "stiffness", self.stiffness.as_ref());
         write!(f, "friction {} on {}", self.name, self.target)?;
         settings(f, &entries)
     }

@@ -188,9 +188,9 @@ fn on_target((name, target): (&mut Name, &mut Name), each: &mut dyn FnMut(Met)) 
 }
 
 fn of_friction(friction: &mut Friction, each: &mut dyn FnMut(Met)) {
-    let Friction { name, target, coulomb, at_rest, stribeck, viscous, normal, radius, creep } = friction;
+    let Friction { name, target, coulomb, at_rest, stribeck, viscous, normal, radius, creep, stiffness } = friction;
     on_target((name, target), each);
-    values([coulomb, at_rest, stribeck, viscous, normal, radius, creep].into_iter().flatten(), each);
+    values([coulomb, at_rest, stribeck, viscous, normal, radius, creep, stiffness].into_iter().flatten(), each);
 }
 
 fn of_body(body: &mut Body, each: &mut dyn FnMut(Met)) {

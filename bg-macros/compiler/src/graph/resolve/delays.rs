@@ -63,7 +63,7 @@ impl Resolver {
         if let Some(known) = self.graph.delays.iter().position(|delay| self.graph.clocks[delay.clock].text == text) {
             return (known, place(self.graph.delays[known].place));
         }
-        let duration = self.time_of(time, "delay", "the time of a `delay`".to_owned(), Allowed::Positive);
+        let duration = self.time_of(time, "the time of a delay", "the time of a `delay`".to_owned(), Allowed::Positive);
         let duration = self.another_let(duration);
         let none = Expression { kind: ExpressionKind::Number(0.0), span };
         let first = self.time_of(&none, "delay", String::new(), Allowed::NotNegative);

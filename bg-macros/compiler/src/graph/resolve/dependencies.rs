@@ -251,7 +251,9 @@ impl Resolver {
             let rate = declared.per(Dimension::SECOND);
             expect_scalar(&types, value, &format!("the rate of `{name}`"), rate, &mut faults);
             if let Some(start) = start {
-                expect_scalar(&types, start, &format!("the start of `{name}`"), declared, &mut faults);
+                let of_delay = of_signal.map(|_| "what a delay gives before the run".to_owned());
+                let what = of_delay.unwrap_or_else(|| format!("the start of `{name}`"));
+                expect_scalar(&types, start, &what, declared, &mut faults);
             }
             integrands.push(rate);
         }

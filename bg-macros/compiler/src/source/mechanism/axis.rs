@@ -31,6 +31,8 @@ pub(super) struct FreeAxis {
     pub pressed: Option<String>,
     /// Whether it is a plane, in which what touches in space slides: its flow is a vector.
     pub is_plane: bool,
+    /// Whether it is that of shapes which do not give way.
+    pub is_rigid: bool,
 }
 
 impl FreeAxis {
@@ -62,23 +64,23 @@ impl Expansion<'_> {
         if let Some(joint) = self.joints.get(first) {
             let free = |axis: &str, units| {
                 let (junction, joint) = (format!("{first}.{axis}"), Some(first.to_owned()));
-                FreeAxis { junction, units, joint, pressed: None, is_plane: false }
+                FreeAxis { junction, units, joint, pressed: None, is_plane: false, is_rigid: false }
             };
             let spin = joint.kind.spin().filter(|_| axis != Some("slide")).map(|_| free("spin", &ROTATION));
             return spin
                 .or_else(|| joint.kind.slide().filter(|_| axis != Some("spin")).map(|_| free("slide", &TRANSLATION)));
         }
         let of_shapes = |contact: &&ShapeContact| target.strip_suffix(".slide").unwrap_or(target) == contact.name.text;
-        if let Some(ShapeContact { name, shapes, .. }) = self.shape_contacts().find(of_shapes) {
+        if let Some(ShapeContact { name, shapes, rigid, .. }) = self.shape_contacts().find(of_shapes) {
             let (junction, pressed) = (format!("{name}.slide"), Some(format!("{name}.pressed")));
             let is_plane = shapes.iter().any(Touching::is_in_space);
-            return Some(FreeAxis { junction, units: &TRANSLATION, joint: None, pressed, is_plane });
+            return Some(FreeAxis { junction, units: &TRANSLATION, joint: None, pressed, is_plane, is_rigid: *rigid });
         }
         let contact = self.contacts().find(|contact| contact.name.text == target);
         let line = contact.map(|contact| format!("{target}.{}", contact.along.letter()));
         let units = if line.is_some() { &TRANSLATION } else { &UNKNOWN };
         let junction = line.unwrap_or_else(|| target.to_owned());
-        Some(FreeAxis { junction, units, joint: None, pressed: None, is_plane: false })
+        Some(FreeAxis { junction, units, joint: None, pressed: None, is_plane: false, is_rigid: false })
     }
 
     fn contacts(&self) -> impl Iterator<Item = &Contact> {

@@ -3,7 +3,10 @@
 //! In: `ast::Friction`. Out: an R at the junction of the axis that it acts on. Sliding, its effort is
 //! s + (h - s) exp(-(v / w)^2) + r v against the flow v: s by `coulomb`, h by `static`, w by `stribeck`, r by
 //! `viscous`; at rest it holds h. With `creep c` it does not stick: the dry part is multiplied by v / sqrt(v^2 + c^2).
-//! Where shapes touch in space, v is a vector in the plane of contact.
+//! Where shapes touch in space, v is a vector in the plane of contact; with `stiffness k` it sticks there by a spring:
+//! a C and an R with the same effort e share v, the spring's part z' = v - e |v| / f, where f is what the friction gives
+//! while it slides. At rest the spring holds, without creep; sliding, e is f along v. That is Dahl's law with its energy
+//! in a C (P. R. Dahl, Solid friction damping of mechanical vibrations, AIAA Journal 14 (1976) 1675-1682).
 //! Source of the law: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and
 //! compensation methods for the control of machines with friction, Automatica 30 (1994) 1083, equation 6.
 
@@ -11,6 +14,18 @@ use super::axis::FreeAxis;
 use super::{Expansion, MechanismFault};
 use crate::source::ast::{Expression, Friction};
 use crate::source::clause::{Allowed, Clause, Given};
+
+/// The speed below which nothing slides, m/s: what sticks by a spring holds exactly at rest, where |v| has no slope.
+const STILL: &str = "1e-9 m/s";
+
+/// By how much of its spring's way what slides may give less than is said, m: it stays finite where what presses ends.
+const SMALL: &str = "1e-10 m";
+
+/// What presses less does not rub, N.
+const LIGHT: &str = "1e-6 N";
+
+/// How long the spring takes to relax in the air, s.
+const RELAXES: &str = "1 ms";
 
 impl Expansion<'_> {
     /// Expands a friction.
@@ -37,18 +52,57 @@ impl Expansion<'_> {
             self.friction_clause(friction, ("stribeck", "stribeck"), axis.units.flow, stribeck);
             dry = format!("{dry} + ({holds} - {dry}) * exp(-{part})");
         }
+        if axis.is_plane && friction.stiffness.is_some() {
+            return self.sticks_by_a_spring(friction, &axis, &dry);
+        }
         let mut law = dry;
         if let Some(creep) = &friction.creep {
             self.friction_clause(friction, ("creep", "creep"), axis.units.flow, creep);
             law = format!("({law}) * v / sqrt({square} + {name}.creep * {name}.creep)");
         }
-        if let Some(viscous) = &friction.viscous {
-            self.friction_clause(friction, ("viscous", "viscous"), axis.units.resistance, viscous);
-            law = format!("{law} + {name}.viscous * v");
+        if let Some(oil) = self.oil(friction, &axis) {
+            law = format!("{law} + {oil} * v");
         }
         let holds = if friction.creep.is_some() { String::new() } else { format!(" holds {holds}") };
         self.text(span, &format!("R {name}(v) = {law}{holds};"));
         self.text(friction.target.span, &format!("{} -> {name};", axis.junction));
+    }
+
+    /// The friction that sticks by a spring, where `dry` is what it gives while it slides with v.
+    fn sticks_by_a_spring(&mut self, friction: &Friction, axis: &FreeAxis, dry: &str) {
+        let Some(stiffness) = &friction.stiffness else { return };
+        let (name, span, slides) = (&friction.name.text, friction.name.span, &axis.junction);
+        self.friction_clause(friction, ("stiffness", "stiffness"), axis.units.stiffness, stiffness);
+        let dry = dry.replace("(v, v)", &format!("({slides}.flow, {slides}.flow)"));
+        self.text(
+            span,
+            &format!(
+                "0 {name}[3]: translation; C {name}.spring = {name}.stiffness;
+                 let {name}.square = dot({slides}.flow, {slides}.flow);
+                 let {name}.moves: m/s = {name}.square / sqrt({name}.square + {STILL} * {STILL});
+                 let {name}.slides: N = {dry};
+                 let {name}.most: N = sqrt({name}.slides * {name}.slides
+                     + {name}.stiffness * {name}.stiffness * {SMALL} * {SMALL});
+                 R {name}.slip(effort e) = if {name}.pressed > {LIGHT} {{ e * {name}.moves / {name}.most }}
+                     else {{ e / ({name}.stiffness * {RELAXES}) + {slides}.flow }};
+                 {slides} -> {name} -> {name}.spring; {name} -> {name}.slip;"
+            ),
+        );
+        if let Some(oil) = self.oil(friction, axis) {
+            self.text(span, &format!("R {name}.oil(v) = {oil} * v; {slides} -> {name}.oil;"));
+        }
+    }
+
+    /// The coefficient of `viscous`, where it is given: of what touches nothing where it does not.
+    fn oil(&mut self, friction: &Friction, axis: &FreeAxis) -> Option<String> {
+        let (name, viscous) = (&friction.name.text, friction.viscous.as_ref()?);
+        self.friction_clause(friction, ("viscous", "viscous"), axis.units.resistance, viscous);
+        if axis.pressed.is_none() {
+            return Some(format!("{name}.viscous"));
+        }
+        let text = format!("let {name}.wet: N*s/m = if {name}.pressed > {LIGHT} {{ {name}.viscous }} else {{ 0 }};");
+        self.text(friction.name.span, &text);
+        Some(format!("{name}.wet"))
     }
 
     /// Reports clauses that are missing or cannot be there.
@@ -60,10 +114,30 @@ impl Expansion<'_> {
         if friction.coulomb.is_none() {
             self.fault(friction.name.span, &missing("coulomb", "it needs what it gives while it slides"));
         }
-        if axis.is_plane && friction.creep.is_none() {
+        if axis.is_plane && friction.creep.is_none() && friction.stiffness.is_none() {
+            let why = "what touches in space slides in two directions: it sticks by a spring of a `stiffness`, such as \
+                       `stiffness 1e6 N/m`, or creeps";
+            self.fault(friction.name.span, &missing("stiffness", why));
+        }
+        if axis.is_rigid && friction.normal.is_none() {
+            let why = "the force of a rigid contact and its friction depend on each other, and may have no solution or two \
+                       (Painleve's paradox): write a `stiffness` in the place of `rigid`, or a force that is known";
+            self.fault(friction.name.span, &missing("normal", why));
+        }
+        if let Some(stiffness) = &friction.stiffness {
+            let why = match (axis.is_plane, &friction.creep) {
+                (false, _) => "only what touches in space sticks by a spring, all else sticks without one",
+                (true, Some(_)) => "it has a `creep`, with which it does not stick",
+                (true, None) => "",
+            };
+            if !why.is_empty() {
+                self.fault(stiffness.span, &superfluous("stiffness", why));
+            }
+        }
+        if let (true, Some(at_rest), None) = (friction.stiffness.is_some(), &friction.at_rest, &friction.stribeck) {
             self.fault(
-                friction.name.span,
-                &missing("creep", "what touches in space slides in two directions, and does not stick"),
+                at_rest.span,
+                &superfluous("static", "what sticks by a spring needs a `stribeck` to fall from it"),
             );
         }
         if let Some(radius) = &friction.radius {
@@ -106,9 +180,9 @@ impl Expansion<'_> {
         force
     }
 
-    /// Binds a clause that is not negative; speeds are above 0.
+    /// Binds a clause that is not negative; speeds and a stiffness are above 0.
     fn friction_clause(&mut self, friction: &Friction, (word, name): (&str, &str), unit: &str, value: &Expression) {
-        let is_speed = matches!(word, "stribeck" | "creep");
+        let is_speed = matches!(word, "stribeck" | "creep" | "stiffness");
         let (given, allowed) =
             if is_speed { (Given::Constant, Allowed::Positive) } else { (Given::Free, Allowed::NotNegative) };
         let clause = friction_clause(friction, word).given(given).allowed(allowed);

@@ -8,7 +8,7 @@ use crate::source::ast::{Friction, Name, Orifice, Stop};
 /// The block of a friction.
 const FRICTION: Place = Place {
     name: "a friction",
-    words: &["coulomb", "static", "stribeck", "viscous", "normal", "radius", "creep"],
+    words: &["coulomb", "static", "stribeck", "viscous", "normal", "radius", "creep", "stiffness"],
     list: false,
 };
 
@@ -36,6 +36,7 @@ impl Cursor<'_> {
                 ("normal", &mut friction.normal),
                 ("radius", &mut friction.radius),
                 ("creep", &mut friction.creep),
+                ("stiffness", &mut friction.stiffness),
             ])
         });
         Ok(friction)
