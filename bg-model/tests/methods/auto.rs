@@ -2,8 +2,9 @@
 
 use crate::problems::*;
 use bg_model::bond_graph;
-use bg_model::integrator::{Auto, Cfmr7, Dop853, Method, Radau9, Tolerances};
+use bg_model::integrator::{Auto, Cfmr7, Dop853, Integrator, Method, Radau9, Reason, Tolerances};
 use bg_model::nalgebra::SVector;
+use bg_model::run::{Simulation, Trajectory};
 use bg_model::simulation::{Finish, Settings, Span, integrate};
 use bg_model::system::Model;
 
@@ -148,6 +149,35 @@ fn strong_dampers_in_few_of_many_states_are_handed_over_to_the_method_that_is_im
     integrate(&smooth(row), &mut tight, &SVector::from(start), span, &settings(1e-11), &mut ()).unwrap();
     assert!(tight.changes().iter().all(|change| change.method == "Radau IIA 9"), "{:?}", tight.changes());
     assert!(!tight.changes().is_empty());
+}
+
+/// What made the longest part of a run begins the next one, which has no trials then and ends where the other does; a
+/// method that needs what the system lacks is no hint.
+#[test]
+fn a_run_begins_with_what_won_before() {
+    let model = Swing::new(SwingParameters::default()).unwrap();
+    let asked = || Simulation::new(&model).rtol(1e-9).until(100.0);
+    let first = asked().run().unwrap();
+    assert_eq!((first.methods.len(), first.hint()), (2, Some(Integrator::Taylor)), "{:?}", first.methods);
+    let next = asked().hint(Integrator::Taylor).run().unwrap();
+    let methods = |run: &Trajectory| run.methods.iter().map(|change| (change.t, change.method)).collect::<Vec<_>>();
+    assert_eq!(methods(&next), [(0.0, "Taylor")]);
+    assert!(next.statistics.factorisations == 0 && first.statistics.factorisations > 0, "{}", next.statistics);
+    let at_end = |run: &Trajectory| *run["x"].last().unwrap();
+    assert!((at_end(&next) - at_end(&first)).abs() < 1e-7, "{} {}", at_end(&next), at_end(&first));
+    let again = asked().hint(Integrator::Taylor).run().unwrap();
+    assert_eq!((&again["x"], &again.times), (&next["x"], &next.times));
+    assert_eq!(asked().method(Integrator::Dop853).run().unwrap().hint(), None);
+
+    let start = SVector::from(VAN_DER_POL_START);
+    for (hint, begins) in [(Integrator::Radau9, "Radau IIA 9"), (Integrator::Taylor, "DOP853")] {
+        let mut method = Auto::beginning_with(hint);
+        let span = Span { t0: 0.0, t_end: 1e-3 };
+        let finish = integrate(&van_der_pol(), &mut method, &start, span, &settings(1e-6), &mut ()).unwrap();
+        assert!(finish.statistics.steps < 100 || begins == "DOP853", "{}", finish.statistics);
+        let first = method.changes().first().map(|change| (change.method, change.reason));
+        assert_eq!(first, (begins == "DOP853").then_some((begins, Reason::First)), "{hint}");
+    }
 }
 
 /// A mass that swings fast and lightly damped under a load that a switch reverses at regular times: the ringing has to be followed,

@@ -10,7 +10,9 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-use super::{AnyMethod, Ark5, Auto, Bs5, Cfmr7, Dop853, Gauss6, Nystrom, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor};
+use super::{
+    AnyMethod, Ark5, Auto, Bs5, Cfmr7, Dop853, Gauss6, Method, Nystrom, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor,
+};
 
 /// An integrator of this crate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -60,6 +62,9 @@ impl Integrator {
         Self::Gauss6,
     ];
 
+    /// Those that `auto` chooses among.
+    pub const OF_AUTO: [Self; 6] = [Self::Dop853, Self::Cfmr7, Self::Nystrom, Self::Taylor, Self::Ark5, Self::Radau9];
+
     /// Its name, in small letters.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -108,6 +113,13 @@ impl Integrator {
             Self::Ros2 => Ros2::new(step).into(),
             Self::Gauss6 => Gauss6::new(step).into(),
         }
+    }
+
+    /// The one of those that `auto` chooses among whose method has this name, as in [`Change::method`](super::Change);
+    /// none where it is another one's.
+    #[must_use]
+    pub(crate) fn of_auto(name: &str) -> Option<Self> {
+        Self::OF_AUTO.into_iter().find(|one| one.method(1.0).name() == name)
     }
 
     /// Whether its steps have a fixed size, which then takes the place of tolerances.

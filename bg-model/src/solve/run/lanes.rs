@@ -85,7 +85,7 @@ impl Many<'_> {
         lifted: impl Fn(&[Lanes<V>]) -> Result<Box<dyn Abreast<V>>, ParameterError>,
     ) -> Vec<Result<Trajectory, LaneError>> {
         let settings = self.request.settings(0.0);
-        let method: AnyMethod = self.request.method.method(self.request.fixed_step);
+        let method: AnyMethod = self.request.method();
         let span = Span { t0: 0.0, t_end: self.request.t_end };
         let model = self.model.machine();
         let sizes = [model.states(), model.switches()];

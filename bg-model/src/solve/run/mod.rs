@@ -114,6 +114,12 @@ impl<'a> Simulation<'a> {
         self
     }
 
+    /// The method that `auto` begins with, such as [`Trajectory::hint`] of a run before.
+    pub fn hint(mut self, method: Integrator) -> Self {
+        self.request.hint = Some(method);
+        self
+    }
+
     /// The relative tolerance of each step; the absolute ones follow the sizes of the states unless one is set.
     pub fn rtol(mut self, relative: f64) -> Self {
         self.request.rtol = relative;
@@ -246,7 +252,7 @@ impl Integration<'_> {
         let Self { request, start, each_step, ending } = self;
         let clock = Clock::started();
         let (t0, beginning) = beginning(model, start.as_ref())?;
-        let mut method: AnyMethod = request.method.method(request.fixed_step);
+        let mut method: AnyMethod = request.method();
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
         let mut observer = observer(model, &request, each_step, another);

@@ -1,7 +1,7 @@
 //! What is asked of a run.
 
 use super::sample_times;
-use crate::solve::integrator::{Integrator, Tolerances};
+use crate::solve::integrator::{AnyMethod, Auto, Integrator, Tolerances};
 use crate::solve::simulation::{Part, Samples, Settings};
 
 /// What is asked of a run.
@@ -9,6 +9,10 @@ use crate::solve::simulation::{Part, Samples, Settings};
 pub struct Request {
     /// The integrator.
     pub method: Integrator,
+    /// The method that `auto` begins with, without trials: what made most of the steps of a run like this
+    /// ([`Trajectory::hint`](super::Trajectory::hint)). Others take over where they are ahead later on. Without effect on
+    /// other integrators.
+    pub hint: Option<Integrator>,
     /// The step of a fixed-step method, s; without effect on others.
     pub fixed_step: f64,
     /// The end of the run, s.
@@ -39,6 +43,7 @@ impl Default for Request {
     fn default() -> Self {
         Self {
             method: Integrator::default(),
+            hint: None,
             fixed_step: 1e-4,
             t_end: 1.0,
             rtol: 1e-8,
@@ -53,6 +58,14 @@ impl Default for Request {
 }
 
 impl Request {
+    /// The method.
+    pub(crate) fn method(&self) -> AnyMethod {
+        match (self.method, self.hint) {
+            (Integrator::Auto, Some(hint)) => Auto::beginning_with(hint).into(),
+            (method, _) => method.method(self.fixed_step),
+        }
+    }
+
     /// The tolerances of each step.
     #[must_use]
     pub fn tolerances(&self) -> Tolerances {

@@ -11,7 +11,7 @@ use crate::model::holding::Redundancy;
 use crate::model::mechanism::Mechanism;
 use crate::solve::failure::Cause;
 use crate::solve::finish::Ended;
-use crate::solve::integrator::Change;
+use crate::solve::integrator::{Change, Integrator};
 use crate::solve::simulation::{Column, Recording, Samples};
 use crate::solve::statistics::Statistics;
 
@@ -94,6 +94,18 @@ impl Trajectory {
             Err(fault) => return Err(fault),
         }
         Ok(())
+    }
+
+    /// The method by which `auto` made the longest part of the run: what a run of the like may begin with
+    /// ([`Request::hint`]). None where another integrator was asked for.
+    #[must_use]
+    pub fn hint(&self) -> Option<Integrator> {
+        let ends = self.methods.iter().skip(1).map(|change| change.t).chain([self.last.t]);
+        let parts: Vec<(&str, f64)> =
+            self.methods.iter().zip(ends).map(|(change, end)| (change.method, end - change.t)).collect();
+        let whole = |method: &str| parts.iter().filter(|(of, _)| *of == method).map(|(_, part)| part).sum::<f64>();
+        let longest = parts.iter().map(|(method, _)| *method).max_by(|a, b| whole(a).total_cmp(&whole(b)));
+        longest.filter(|_| self.request.method == Integrator::Auto).and_then(Integrator::of_auto)
     }
 
     /// Appends a run that started where this one has come to.

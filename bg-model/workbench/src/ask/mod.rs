@@ -2,6 +2,8 @@
 //! asked.
 
 pub mod compiled;
+#[cfg(not(target_arch = "wasm32"))]
+pub mod hint;
 pub mod inputs;
 pub mod machine;
 pub mod maker;

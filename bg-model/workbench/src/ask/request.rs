@@ -33,6 +33,14 @@ pub struct Integration {
     /// The integrator.
     #[serde(deserialize_with = "from_name", serialize_with = "as_name")]
     pub method: Integrator,
+    /// What `auto` begins with.
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "from_hint",
+        serialize_with = "as_hint"
+    )]
+    pub hint: Option<Integrator>,
     /// Relative tolerance of each step.
     pub rtol: f64,
     /// Absolute tolerance of each step, SI units; without one, a tenth of the relative one.
@@ -45,7 +53,7 @@ impl Default for Integration {
     /// As a run is made without options.
     fn default() -> Self {
         let Request { method, fixed_step, rtol, .. } = Request::default();
-        Self { t_end: T_END, step: 0.01, method, rtol, atol: None, fixed_step }
+        Self { t_end: T_END, step: 0.01, method, hint: None, rtol, atol: None, fixed_step }
     }
 }
 
@@ -55,6 +63,15 @@ fn from_name<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Integrator, D
 
 fn as_name<S: Serializer>(method: &Integrator, serializer: S) -> Result<S::Ok, S::Error> {
     serializer.serialize_str(method.name())
+}
+
+fn from_hint<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Integrator>, D::Error> {
+    from_name(deserializer).map(Some)
+}
+
+#[expect(clippy::ref_option, reason = "serde asks for it")]
+fn as_hint<S: Serializer>(hint: &Option<Integrator>, serializer: S) -> Result<S::Ok, S::Error> {
+    hint.map(Integrator::name).serialize(serializer)
 }
 
 /// A number of an [`Integration`] that cannot be.
@@ -126,7 +143,7 @@ impl Integration {
         times.dedup();
         let step_limit = (STEPS_PER_SECOND * t_end.max(1.0)) as u64;
         let samples = Samples::At(times);
-        let method = self.method;
-        Ok(Request { method, fixed_step, t_end, rtol, atol, samples, peaks, step_limit, ..Request::default() })
+        let (method, hint) = (self.method, self.hint);
+        Ok(Request { method, hint, fixed_step, t_end, rtol, atol, samples, peaks, step_limit, ..Request::default() })
     }
 }

@@ -14,6 +14,7 @@ use super::optimize::OptimizeArguments;
 use super::plot::PlotArguments;
 use super::sensitivity::SensitivityArguments;
 use super::sweep::SweepArguments;
+use crate::ask::hint;
 use crate::ask::request::Integration;
 use crate::ask::request::T_END;
 use crate::show::picture::Level;
@@ -202,6 +203,11 @@ pub struct IntegrationArguments {
     #[arg(long, value_name = "NAME", default_value_t, value_parser = integrator())]
     pub method: Integrator,
 
+    /// What auto begins with, without trials: a method's name, or the summary.json of a run like this, which says by
+    /// what most of it was made. Another method takes over later on where it is ahead
+    #[arg(long, value_name = "NAME|summary.json", value_parser = hint::read)]
+    pub hint: Option<Integrator>,
+
     /// Step of an integrator with a fixed step, s
     #[arg(long, value_name = "SECONDS", default_value = "1e-4", value_parser = real, allow_negative_numbers = true)]
     pub fixed_step: f64,
@@ -222,8 +228,8 @@ pub struct IntegrationArguments {
 impl IntegrationArguments {
     /// The same, not yet checked.
     pub const fn integration(&self) -> Integration {
-        let &Self { t_end, method, fixed_step, rtol, atol, step } = self;
-        Integration { t_end, step, method, rtol, atol, fixed_step }
+        let &Self { t_end, method, hint, fixed_step, rtol, atol, step } = self;
+        Integration { t_end, step, method, hint, rtol, atol, fixed_step }
     }
 }
 
@@ -247,7 +253,7 @@ pub struct RunArguments {
     /// Make the run of a summary.json again, with its scene, parameters, inputs, start and integrator: the same bits. Files
     /// of inputs are read again and have to be the same
     #[arg(long, value_name = "summary.json", conflicts_with_all = [
-        "scene", "set", "params", "input", "t_end", "method", "fixed_step", "rtol", "atol", "step", "start", "from"
+        "scene", "set", "params", "input", "t_end", "method", "hint", "fixed_step", "rtol", "atol", "step", "start", "from"
     ])]
     pub again: Option<PathBuf>,
 
@@ -395,7 +401,15 @@ impl LinearizeArguments {
     /// How the run to `t` (s) is made.
     pub fn integration(&self, t: f64) -> IntegrationArguments {
         let Self { method, rtol, .. } = *self;
-        IntegrationArguments { t_end: t, method, fixed_step: Request::default().fixed_step, rtol, atol: None, step: t }
+        IntegrationArguments {
+            t_end: t,
+            method,
+            hint: None,
+            fixed_step: Request::default().fixed_step,
+            rtol,
+            atol: None,
+            step: t,
+        }
     }
 }
 

@@ -161,7 +161,15 @@ impl CampbellArguments {
     /// How the run to `t` (s) is made.
     fn integration(&self, t: f64) -> IntegrationArguments {
         let Self { method, rtol, .. } = *self;
-        IntegrationArguments { t_end: t, method, fixed_step: Request::default().fixed_step, rtol, atol: None, step: t }
+        IntegrationArguments {
+            t_end: t,
+            method,
+            hint: None,
+            fixed_step: Request::default().fixed_step,
+            rtol,
+            atol: None,
+            step: t,
+        }
     }
 }
 

@@ -142,7 +142,7 @@ fn bound(variables: &mut [Variable], text: &str, scene: &str) -> Result<(), Inpu
 fn integration(arguments: &IdentifyArguments, data: &Data) -> Result<Request, InputError> {
     let t_end = data.times.last().copied().unwrap_or_default();
     let (method, rtol, fixed_step) = (arguments.method, arguments.rtol, Request::default().fixed_step);
-    request(&IntegrationArguments { t_end, method, fixed_step, rtol, atol: None, step: t_end }, 0.0, None)
+    request(&IntegrationArguments { t_end, method, hint: None, fixed_step, rtol, atol: None, step: t_end }, 0.0, None)
 }
 
 /// The figure of a column.

@@ -71,6 +71,9 @@ pub struct Summary {
     pub reached_s: f64,
     /// The integrators that made the steps, with the time from which on.
     pub integrators: Vec<String>,
+    /// The method by which `auto` made the longest part, for `--hint`; none where another integrator was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hint: Option<&'static str>,
     /// The step of a fixed-step method, s; such a method has no tolerances.
     pub fixed_step_s: Option<f64>,
     /// Relative tolerance.
@@ -162,6 +165,7 @@ impl Summary {
             from_s: (from != 0.0).then_some(from),
             reached_s: reached,
             integrators: integrators(method, &run.methods),
+            hint: run.hint().map(Integrator::name),
             fixed_step_s: method.has_fixed_step().then_some(fixed_step),
             rtol,
             atol: run.request.atol,

@@ -112,6 +112,39 @@ fn a_run_is_made_again_from_its_summary() {
 }
 
 #[test]
+fn a_run_begins_with_what_made_another_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let read = |file: &str| fs::read_to_string(path.join(file)).unwrap();
+    let json = |file: &str| serde_json::from_str::<serde_json::Value>(&read(file)).unwrap();
+    let with = |out: &str, hint: &[&str]| {
+        text(path, &[&["run", "--t-end", "0.4", "--step", "0.03", "--out", out], hint].concat());
+    };
+    with("o", &[]);
+    let mut summary = json("o/summary.json");
+    assert_eq!((&summary["hint"], &summary["recipe"]["integration"]["hint"]), (&"dop853".into(), &().into()));
+    summary["hint"] = "radau9".into();
+    fs::write(path.join("other.json"), summary.to_string()).unwrap();
+    with("p", &["--hint", "other.json"]);
+    let told = json("p/summary.json");
+    assert_eq!(told["integrators"][0], "Radau IIA 9 (auto found none better)");
+    assert_eq!((&told["hint"], &told["recipe"]["integration"]["hint"]), (&"radau9".into(), &"radau9".into()));
+    // The hint is part of the recipe, so the bits are the same.
+    fs::remove_file(path.join("other.json")).unwrap();
+    text(path, &["run", "--again", "p/summary.json", "--out", "q"]);
+    assert_eq!(read("p/trajectory.csv"), read("q/trajectory.csv"));
+    assert!(read("p/trajectory.csv") != read("o/trajectory.csv"));
+
+    let refused = |hint: &str| String::from_utf8(run(path, &["run", "--hint", hint]).stderr).unwrap();
+    let them = "dop853, cfmr7, nystrom, taylor, ark5, radau9";
+    assert!(refused("bs5").contains(&format!("auto does not choose it; give one of {them}")), "{}", refused("bs5"));
+    assert!(refused("best").contains(&format!("give one of {them}, or the summary.json")), "{}", refused("best"));
+    assert!(refused("none.json").contains("cannot be read"), "{}", refused("none.json"));
+    text(path, &["run", "--t-end", "0.1", "--method", "dop853", "--out", "r"]);
+    assert!(refused("r/summary.json").contains("has no `hint`"), "{}", refused("r/summary.json"));
+}
+
+#[test]
 fn outputs_are_chosen_and_ordered() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

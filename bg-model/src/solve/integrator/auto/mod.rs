@@ -16,7 +16,7 @@ use alloc::vec::Vec;
 pub use self::change::{Change, Reason};
 use self::race::Race;
 use super::hand_on::hand_on;
-use super::{Ark5, Flow, Method, PointRef, Radau9, Scale, StepControl, is_finite, rounding};
+use super::{Ark5, Flow, Integrator, Method, PointRef, Radau9, Scale, StepControl, is_finite, rounding};
 
 /// Steps before the first trial, and the most between two trials.
 const WAIT: [u32; 2] = [16, 4096];
@@ -99,6 +99,16 @@ macro_rules! present {
 impl Kind {
     const ALL: [Self; 3] = [Self::Explicit, Self::Partitioned, Self::Implicit];
 
+    /// That of the method of this name; none where it is none of them.
+    const fn of(method: Integrator) -> Option<Self> {
+        match method {
+            Integrator::Dop853 | Integrator::Cfmr7 | Integrator::Nystrom | Integrator::Taylor => Some(Self::Explicit),
+            Integrator::Ark5 => Some(Self::Partitioned),
+            Integrator::Radau9 => Some(Self::Implicit),
+            _ => None,
+        }
+    }
+
     /// The other kinds that are worth trying, those first that are implicit in fewer states.
     fn others(self, relative: f64, n: usize) -> impl Iterator<Item = Self> {
         let has_partitioned = relative >= LOOSE && n >= MANY;
@@ -161,6 +171,8 @@ pub struct Auto {
     changes: Vec<Change>,
     /// The explicit method that was told last.
     told: &'static str,
+    /// What made most of the steps of a run before.
+    hint: Option<Integrator>,
 }
 
 /// A step of a more implicit method that satisfies the tolerances, with the steps of the present one under way to its
@@ -235,7 +247,20 @@ impl Auto {
             nearest: 0.0,
             changes: Vec::with_capacity(REMEMBERED),
             told,
+            hint: None,
         }
+    }
+
+    /// The same, but for `method` to begin: one of those named above, that made most of the steps of a run like this.
+    /// The first trials of others come as late as they do in a long run. A method that is none of these, or needs what
+    /// the system does not have, is no hint.
+    #[must_use]
+    pub fn beginning_with(method: Integrator) -> Self {
+        let kind = Kind::of(method);
+        let wait = if kind.is_some() { WAIT[1] } else { WAIT[0] };
+        let explicit = Race::beginning_with(Some(method));
+        let told = explicit.name();
+        Self { kind: kind.unwrap_or(Kind::Explicit), wait, told, explicit, hint: Some(method), ..Self::new() }
     }
 
     /// What a step of the method of a kind costs beside one that its worth was measured with.
@@ -429,7 +454,7 @@ impl Method for Auto {
         if self.end.len() == states {
             return;
         }
-        *self = Self::new();
+        *self = self.hint.map_or_else(Self::new, Self::beginning_with);
         self.explicit.fit(states);
         self.partitioned.fit(states);
         self.implicit.fit(states);
@@ -478,6 +503,10 @@ impl Method for Auto {
         self.since += 1;
         self.since_event += 1;
         self.stint += 1;
+        // Before the first trial it is these steps that later ones are held against.
+        if self.tried.is_nan() && self.stint as usize == RECENT {
+            self.tried = self.typical();
+        }
         present!((&mut) self, method => method.advance());
     }
 

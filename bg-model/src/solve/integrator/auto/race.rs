@@ -11,7 +11,9 @@ use alloc::vec::Vec;
 
 use super::{MANY, price};
 use crate::solve::integrator::hand_on::hand_on;
-use crate::solve::integrator::{Cfmr7, Dop853, Flow, Method, Nystrom, PointRef, Scale, StepControl, Taylor, is_finite};
+use crate::solve::integrator::{
+    Cfmr7, Dop853, Flow, Integrator, Method, Nystrom, PointRef, Scale, StepControl, Taylor, is_finite,
+};
 
 /// Accepted steps before the first race, and the most between two races.
 const REST: [u32; 2] = [16, 8192];
@@ -60,6 +62,17 @@ enum Runner {
 
 impl Runner {
     const ALL: [Self; RUNNERS] = [Self::Dop853, Self::Cfmr7, Self::Nystrom, Self::Taylor];
+
+    /// The method of this name; none where it is none of them.
+    const fn of(method: Integrator) -> Option<Self> {
+        match method {
+            Integrator::Dop853 => Some(Self::Dop853),
+            Integrator::Cfmr7 => Some(Self::Cfmr7),
+            Integrator::Nystrom => Some(Self::Nystrom),
+            Integrator::Taylor => Some(Self::Taylor),
+            _ => None,
+        }
+    }
 }
 
 /// What the looks of a rest have shown of a method.
@@ -156,6 +169,8 @@ pub(super) struct Race {
     series: Option<f64>,
     /// What an accepted step costs beside.
     held: f64,
+    /// What made most of the steps of a run before.
+    hint: Option<Integrator>,
     /// Whether the first method has been chosen.
     has_begun: bool,
     /// The looks in this rest, and who has promised to be ahead in one of them.
@@ -207,6 +222,7 @@ impl Race {
             forces: None,
             series: None,
             held: 0.0,
+            hint: None,
             has_begun: false,
             looks: 0,
             promises: [Promise::None; RUNNERS],
@@ -229,6 +245,16 @@ impl Race {
             is_under_way: false,
             rest: REST[0],
             h: 0.0,
+        }
+    }
+
+    /// The method of this name begins, if it is one of these and the system has what it needs; there is no race for as
+    /// long as possible.
+    pub fn beginning_with(hint: Option<Integrator>) -> Self {
+        let race = Self { hint, ..Self::new() };
+        match hint.and_then(Runner::of) {
+            Some(runner) => Self { runner, ahead: runner, rest: REST[1], ..race },
+            None => race,
         }
     }
 
@@ -374,10 +400,16 @@ impl Race {
     fn prepare(&mut self, flow: &Flow<'_>, scale: &Scale) {
         self.forces = price::of_forces(flow);
         self.held = if flow.is_held() { price::HELD } else { 0.0 };
-        if scale.relative >= LOOSE && flow.states() < MANY {
-            self.ahead = Runner::Cfmr7;
-            self.begin(self.ahead);
+        if let Some(runner) = self.hint.and_then(Runner::of)
+            && let Some(price) = self.price(runner, flow, scale)
+        {
+            self.series = self.series.or((runner == Runner::Taylor).then_some(price));
+            return;
         }
+        self.rest = REST[0];
+        let begins_loosely = scale.relative >= LOOSE && flow.states() < MANY;
+        self.ahead = if begins_loosely { Runner::Cfmr7 } else { Runner::Dop853 };
+        self.begin(self.ahead);
     }
 
     /// A lap or a rest of this method begins.
@@ -417,7 +449,7 @@ impl Method for Race {
         if self.end.len() == states {
             return;
         }
-        *self = Self::new();
+        *self = Self::beginning_with(self.hint);
         self.dop853.fit(states);
         self.cfmr7.fit(states);
         self.nystrom.fit(states);

@@ -96,7 +96,7 @@ impl Record {
     pub(super) fn text(&self) -> Result<String, toml::ser::Error> {
         let Self { model, version, commit, scene, inputs, input_files, run, parameters, values, counts, tolerances } =
             self;
-        let Integration { t_end, step, method, rtol, atol, fixed_step } = run;
+        let Integration { t_end, step, method, hint, rtol, atol, fixed_step } = run;
         let mut text = format!("{HEAD}model = {model:?}\nversion = {version:?}\n");
         text += &commit.as_ref().map(|commit| format!("commit = {commit:?}\n")).unwrap_or_default();
         text += &format!("scene = {scene:?}\n");
@@ -105,6 +105,7 @@ impl Record {
         }
         text +=
             &format!("\n[run]\nt_end = {t_end:?}\nstep = {step:?}\nmethod = {:?}\nrtol = {rtol:?}\n", method.name());
+        text += &hint.map(|hint| format!("hint = {:?}\n", hint.name())).unwrap_or_default();
         text += &atol.map(|atol| format!("atol = {atol:?}\n")).unwrap_or_default();
         text += &format!("fixed_step = {fixed_step:?}\n");
         if !input_files.is_empty() {
@@ -238,7 +239,7 @@ mod tests {
     #[test]
     fn what_is_written_reads_back() {
         let run =
-            Integration { t_end: 1.0, step: 0.1, method: Integrator::Rk4, rtol: 1e-8, atol: None, fixed_step: 1e-5 };
+            Integration { t_end: 1.0, step: 0.1, method: Integrator::Rk4, fixed_step: 1e-5, ..Integration::default() };
         let counts = Counts::from(&Statistics { steps: 5, guard_evaluations: 7, ..Statistics::default() });
         let tolerance = Tolerance { relative: 1e-300, absolute: 2.0 };
         let tolerances = ["1", "N*m/rad", "kg*m^2"].map(|unit| (unit.to_owned(), tolerance));
@@ -260,7 +261,7 @@ mod tests {
             parameters: BTreeMap::new(),
             values: BTreeMap::new(),
             commit: None,
-            run: Integration { atol: Some(1e-12), ..run },
+            run: Integration { atol: Some(1e-12), hint: Some(Integrator::Nystrom), ..run },
             ..record.clone()
         };
         for record in [record, without] {

@@ -10,7 +10,7 @@ use crate::ask::request::Integration;
 /// The command of the program called `program` that records `golden` anew with these parameters.
 pub(super) fn command(program: &str, golden: &Golden, parameters: &Values) -> String {
     let scene = golden.record.scene.as_str();
-    let Integration { t_end, step, method, rtol, atol, fixed_step } = golden.record.run;
+    let Integration { t_end, step, method, hint, rtol, atol, fixed_step } = golden.record.run;
     let mut words: Vec<String> = [program, "golden", "record", "--scene", scene].map(str::to_owned).to_vec();
     let mut option = |name: &str, value: String| words.extend([format!("--{name}"), value]);
     for (info, value) in parameters.changed() {
@@ -22,6 +22,9 @@ pub(super) fn command(program: &str, golden: &Golden, parameters: &Values) -> St
     option("t-end", number(t_end));
     option("step", number(step));
     option("method", method.name().to_owned());
+    if let Some(hint) = hint {
+        option("hint", hint.name().to_owned());
+    }
     if method.has_fixed_step() {
         option("fixed-step", number(fixed_step));
     }

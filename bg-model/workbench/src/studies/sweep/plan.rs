@@ -18,6 +18,7 @@ use toml::Spanned;
 use super::design::{Axis, Design, DesignError, Interval};
 use super::distribution::{Distribution, Drawn};
 use super::wanted::{Numbers, Reduction, Wanted};
+use crate::ask::hint;
 use crate::ask::inputs::{self, InputSettingError, Setting};
 use crate::ask::parameters::{self, Chosen, SettingError, Values, nearest, one_line, place_of};
 use crate::ask::request::{Integration, RequestError};
@@ -119,6 +120,7 @@ struct File {
     t_end: Option<f64>,
     step: Option<f64>,
     method: Option<String>,
+    hint: Option<String>,
     rtol: Option<f64>,
     atol: Option<f64>,
     fixed_step: Option<f64>,
@@ -448,6 +450,7 @@ fn integration(file: &File) -> Result<Integration, String> {
         t_end: file.t_end.unwrap_or(usual.t_end),
         step: file.step.unwrap_or(usual.step),
         method,
+        hint: file.hint.as_deref().map(hint::read).transpose().map_err(|fault| format!("hint: {fault}"))?,
         rtol: file.rtol.unwrap_or(usual.rtol),
         atol: file.atol,
         fixed_step: file.fixed_step.unwrap_or(usual.fixed_step),

@@ -69,7 +69,8 @@ pub fn of(program: &Program, plan: &Plan<'_>) -> Table {
         (INPUT_FILES, Value::Table(files.collect())),
         (PLAN, Value::String(text.clone())),
     ];
-    entries.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+    let hint = request.hint.map(|hint| ("hint", Value::String(hint.name().to_owned())));
+    entries.into_iter().chain(hint).map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 fn whole(value: usize) -> Value {
