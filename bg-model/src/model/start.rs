@@ -7,6 +7,7 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
+use core::any::Any;
 
 use crate::model::assembly::{AssemblyError, Closed, Gap, close};
 use crate::model::clock;
@@ -14,11 +15,10 @@ use crate::model::delayed;
 use crate::model::dynamics::{Dynamics, branches};
 use crate::model::holding::Redundancy;
 use crate::model::nearest::lifted;
-pub use crate::model::reactions::share;
 use crate::model::reactions::{self, fit};
 use crate::model::requirement::{Requirement, require};
 use crate::model::sampled;
-use crate::model::scalar::Scalar;
+use crate::model::scalar::{DoubleDouble, Gradient, KnownAs, Scalar};
 
 /// A routine of parameters and unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,6 +120,43 @@ fn pose<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Vec
     Ok(listed(system.states(), |to| of.in_scalars(StartRoutine::State, &unknowns, to)))
 }
 
+/// What is asked of a start in numbers `S`, compiled where a table of it stands.
+struct Functions<S: Scalar> {
+    start: Start<S>,
+    redundant: fn(&dyn Starting<S>, &dyn Dynamics<S>) -> Vec<Redundancy>,
+    share: Share<S, <S as Scalar>::Switch>,
+}
+
+type Start<S> = fn(&dyn Starting<S>, &dyn Dynamics<S>, &mut [S]) -> Result<S, AssemblyError>;
+type Share<S, Switch> = fn(&dyn Dynamics<S>, S, &[S], &[Switch], &mut [S]);
+
+impl<S: Scalar> Functions<S> {
+    const ALL: Self = Self { start: started, redundant: held_twice, share: reactions::share };
+}
+
+static DOUBLES: Functions<f64> = Functions::ALL;
+static DOUBLE_DOUBLES: Functions<DoubleDouble> = Functions::ALL;
+static GRADIENTS: Functions<Gradient> = Functions::ALL;
+
+/// Those of numbers that this crate knows, compiled here; those of others, compiled with the caller. Only one branch is
+/// ever compiled: each asks a constant.
+fn functions<S: Scalar>() -> &'static Functions<S> {
+    if const { matches!(S::KNOWN_AS, KnownAs::Doubles) } {
+        known(&DOUBLES)
+    } else if const { matches!(S::KNOWN_AS, KnownAs::DoubleDoubles) } {
+        known(&DOUBLE_DOUBLES)
+    } else if const { matches!(S::KNOWN_AS, KnownAs::Gradients) } {
+        known(&GRADIENTS)
+    } else {
+        const { &Functions::ALL }
+    }
+}
+
+/// The same table in numbers that are what they are known as.
+fn known<S: Scalar>(table: &'static dyn Any) -> &'static Functions<S> {
+    table.downcast_ref().expect("numbers are what they are known as")
+}
+
 /// Writes the start state of a model. The kinetic energy that impulses have taken to make it fit, J. What no unknown
 /// closes of the gaps of rigid joints, which is little, a projection does: a run would take it for an error of its
 /// steps. Samples whose first instant is 0 are computed there. Allocates where there are joints or clocks.
@@ -127,6 +164,10 @@ fn pose<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Result<Vec
 /// # Errors
 /// The pose does not close, or the velocities do not fit.
 pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut [S]) -> Result<S, AssemblyError> {
+    (functions().start)(of, system, x)
+}
+
+fn started<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut [S]) -> Result<S, AssemblyError> {
     let lost = assembled(of, system, x)?;
     delayed::begin(system, 0.0, &branches(system, 0.0, x), x);
     let clocks = system.clocks();
@@ -155,7 +196,7 @@ fn assembled<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut 
 }
 
 /// The signs of the roots in the closed start pose; 1 where there is none.
-pub fn sides<S: Scalar>(of: &dyn Starting<S>) -> Vec<f64> {
+pub fn sides(of: &dyn Starting) -> Vec<f64> {
     let sign = |side: f64| if side < 0.0 { -1.0 } else { 1.0 };
     let mut sides = vec![1.0; of.table().sides];
     if let Ok(Closed { coordinates, .. }) = closed(of) {
@@ -177,7 +218,17 @@ pub fn decided<const K: usize>(of: Vec<f64>) -> [f64; K] {
     of.try_into().expect("a number for each that is decided")
 }
 
+/// Makes `reactions` those of least norm: joints that hold the same motion share what it takes. Allocates where rows
+/// take no part.
+pub fn share<S: Scalar>(joints: &dyn Dynamics<S>, t: S, x: &[S], negative: &[S::Switch], reactions: &mut [S]) {
+    (functions().share)(joints, t, x, negative, reactions);
+}
+
 /// The joints that hold what others hold already, in all poses.
 pub fn redundant<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Vec<Redundancy> {
+    (functions().redundant)(of, system)
+}
+
+fn held_twice<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>) -> Vec<Redundancy> {
     pose(of, system).map_or_else(|_| Vec::new(), |pose| reactions::redundant(system, &pose))
 }

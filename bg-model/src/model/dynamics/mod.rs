@@ -127,8 +127,8 @@ pub trait Dynamics<S: Scalar = f64> {
 
     /// [`Linearised::jacobian`]; by differences where the system does not know it.
     fn jacobian(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S], slope: &mut [S]) {
-        let rate = |t, x: &[S], dx: &mut [S]| self.rate(t, x, negative, dx);
-        differences(rate, t, x, entries, slope, &mut vec![S::from_f64(0.0); x.len()]);
+        let mut rate = |t, x: &[S], dx: &mut [S]| self.rate(t, x, negative, dx);
+        differences(&mut rate, t, x, entries, slope, &mut vec![S::from_f64(0.0); x.len()]);
     }
 
     /// [`Linearised::damping_sparsity`].

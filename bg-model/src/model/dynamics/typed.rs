@@ -159,8 +159,8 @@ where
         match self.of.linearised() {
             Some(linearised) => linearised.jacobian(t, values(x), negative, entries, values_mut(slope)),
             None => {
-                let rate = |t, x: &[f64], dx: &mut [f64]| self.of.rate(t, values(x), negative, values_mut(dx));
-                differences(rate, t, x, entries, slope, &mut [0.0; N]);
+                let mut rate = |t, x: &[f64], dx: &mut [f64]| self.of.rate(t, values(x), negative, values_mut(dx));
+                differences(&mut rate, t, x, entries, slope, &mut [0.0; N]);
             }
         }
     }

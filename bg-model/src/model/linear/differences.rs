@@ -8,10 +8,13 @@
 use crate::model::scalar::Scalar;
 use crate::model::scalar::double::root;
 
+/// Writes the rate at a time and state.
+type Rate<'a, S> = dyn FnMut(S, &[S], &mut [S]) + 'a;
+
 /// Writes df/dx into `entries`, column by column, and df/dt into `slope`. Evaluates the rate once for each state and
 /// twice more. `room` has a place for each state.
 pub(crate) fn differences<S: Scalar>(
-    mut rate: impl FnMut(S, &[S], &mut [S]),
+    rate: &mut Rate<'_, S>,
     t: S,
     x: &[S],
     entries: &mut [S],
@@ -45,9 +48,9 @@ mod tests {
     #[test]
     fn large_states_and_times_have_derivatives() {
         for size in [0.0, 1.0, 1e6, 1e16, 1e100] {
-            let rate = |t: f64, x: &[f64], dx: &mut [f64]| dx[0] = 3.0 * x[0] - 2.0 * t;
+            let mut rate = |t: f64, x: &[f64], dx: &mut [f64]| dx[0] = 3.0 * x[0] - 2.0 * t;
             let (mut entries, mut slope) = ([f64::NAN], [f64::NAN]);
-            differences(rate, size, &[size], &mut entries, &mut slope, &mut [0.0]);
+            differences(&mut rate, size, &[size], &mut entries, &mut slope, &mut [0.0]);
             assert!((entries[0] - 3.0).abs() < 3e-3 && (slope[0] + 2.0).abs() < 3e-3, "{size}: {entries:?} {slope:?}");
         }
     }

@@ -30,8 +30,7 @@ pub(crate) use impact::{After, Collision, impacts_of};
 #[cfg(feature = "std")]
 pub(crate) use monitor::LoopsInLanes;
 pub(crate) use monitor::{Broken, LoopMonitor, Moved};
-pub use shared::share;
-pub(crate) use shared::{kept, redundant};
+pub(crate) use shared::{kept, redundant, share};
 
 /// A start state whose joints fit.
 #[derive(Clone, Debug, PartialEq)]

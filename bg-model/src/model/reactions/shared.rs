@@ -121,7 +121,7 @@ impl Start<'_> {
 
 /// Makes `reactions`, zero for the rows that take no part, those of least norm: joints that hold the same motion share
 /// what it takes. Those of dry friction, after them, stay. N and N m count alike. Allocates where rows take no part.
-pub fn share<S: Scalar>(joints: &dyn Dynamics<S>, t: S, x: &[S], negative: &[S::Switch], reactions: &mut [S]) {
+pub(crate) fn share<S: Scalar>(joints: &dyn Dynamics<S>, t: S, x: &[S], negative: &[S::Switch], reactions: &mut [S]) {
     if !joints.kept().contains(&0.0) {
         return;
     }

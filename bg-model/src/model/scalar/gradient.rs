@@ -8,7 +8,7 @@ use core::cmp::Ordering;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
 use super::slopes::{Everywhere, Slopes, WIDTH};
-use super::{Both, Scalar};
+use super::{Both, KnownAs, Scalar};
 
 /// A value and its derivatives along some directions, in vectors `V`.
 #[derive(Clone, Copy, Debug)]
@@ -112,6 +112,7 @@ impl<V: Slopes> Neg for GradientIn<V> {
 impl<V: Slopes> Scalar for GradientIn<V> {
     type Pair = Both<Self>;
     type Switch = bool;
+    const KNOWN_AS: KnownAs = if V::ARE_EVERYWHERE { KnownAs::Gradients } else { KnownAs::Other };
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

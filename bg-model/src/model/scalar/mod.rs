@@ -51,6 +51,9 @@ pub trait Scalar:
     type Pair: Pair<Self>;
     /// Whether the guard of a switch is negative: for numbers side by side, of each.
     type Switch: Copy + Debug + From<bool>;
+    /// What these numbers are known as, where this crate compiles what starts a model in them.
+    #[doc(hidden)]
+    const KNOWN_AS: KnownAs = KnownAs::Other;
 
     /// The number nearest to `value`.
     fn from_f64(value: f64) -> Self;
@@ -111,9 +114,24 @@ pub trait Scalar:
     }
 }
 
+/// Numbers for which this crate compiles what starts a model, so that no crate with a model compiles that again.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum KnownAs {
+    /// `f64`.
+    Doubles,
+    /// [`DoubleDouble`].
+    DoubleDoubles,
+    /// [`Gradient`].
+    Gradients,
+    /// Any others: compiled with who starts a model in them.
+    Other,
+}
+
 impl Scalar for f64 {
     type Pair = PairOfDoubles;
     type Switch = bool;
+    const KNOWN_AS: KnownAs = KnownAs::Doubles;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

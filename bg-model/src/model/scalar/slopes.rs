@@ -24,6 +24,8 @@ pub trait Slopes: Copy + Debug + 'static {
     /// Whether operations are instructions only where they are inlined into code compiled for them, by
     /// [`vectorized`](Slopes::vectorized).
     const MUST_BE_INLINED: bool;
+    /// Whether they are those of a [`Gradient`](super::Gradient).
+    const ARE_EVERYWHERE: bool = false;
 
     /// Whether the machine at hand has such vectors: to be asked before there is one.
     fn is_at_hand() -> bool;
@@ -82,6 +84,7 @@ macro_rules! in_vectors {
 
             const LANES: usize = 2 * $count;
             const MUST_BE_INLINED: bool = false;
+            const ARE_EVERYWHERE: bool = $count == WIDTH / 2;
 
             fn is_at_hand() -> bool {
                 true

@@ -19,7 +19,7 @@ mod elementary;
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{Both, Scalar, double};
+use super::{Both, KnownAs, Scalar, double};
 
 /// The sum of two `f64`, the second at most half a unit in the last place of the first.
 ///
@@ -144,6 +144,7 @@ impl Neg for DoubleDouble {
 impl Scalar for DoubleDouble {
     type Pair = Both<Self>;
     type Switch = bool;
+    const KNOWN_AS: KnownAs = KnownAs::DoubleDoubles;
 
     #[inline(always)]
     fn from_f64(value: f64) -> Self {

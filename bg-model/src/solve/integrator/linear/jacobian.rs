@@ -45,7 +45,7 @@ impl Jacobian {
             self.is_replaced = true;
             self.entries.resize(Sparsity::Full.len(n), 0.0);
             let Self { entries, slope, room: [room, _], .. } = self;
-            differences(|t, x, rate| flow.rate(t, x, rate), start.t, start.x, entries, slope, room);
+            differences(&mut |t, x, rate| flow.rate(t, x, rate), start.t, start.x, entries, slope, room);
         } else {
             self.replace_faulty(flow, start, h, scale);
         }
