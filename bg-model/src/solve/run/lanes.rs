@@ -8,7 +8,7 @@ use std::rc::Rc;
 
 use thiserror::Error;
 
-use super::clock::Clock;
+use super::stopwatch::Stopwatch;
 use super::{Made, Reason, Request, RunError, Simulation, Trajectory, observer, recorded};
 use crate::model::dynamics::{Abreast, Machine};
 use crate::model::mechanism::Accompanied;
@@ -92,7 +92,7 @@ impl Many<'_> {
         let Some(together) = AnyInLanes::of(&method, sizes[0]).filter(|_| lanes::fits(&*model, span, &settings)) else {
             return self.all_alone();
         };
-        let clock = Clock::started();
+        let stopwatch = Stopwatch::started();
         // What each run has of its own: its model, its start, its method.
         let made = |values: &Vec<f64>| -> Option<Own> {
             let model = self.model.tuned(values).ok()?;
@@ -117,7 +117,7 @@ impl Many<'_> {
             finished[number] = finish.map(|finish| (recorded(observers), finish));
         });
         let method = method.name();
-        let wall = clock.elapsed() / u32::try_from(self.values.len().max(1)).unwrap_or(u32::MAX);
+        let wall = stopwatch.elapsed() / u32::try_from(self.values.len().max(1)).unwrap_or(u32::MAX);
         let results = finished.into_iter().zip(self.values).map(|(finished, values)| {
             let Some((recorder, finish)) = finished else { return self.alone(values) };
             let first = Change { t: 0.0, method, reason: Reason::First };

@@ -5,20 +5,20 @@
 //! samples and asks after each step whether to go on: 0.4 % more instructions than a `Recorder` by itself, counted on 5
 //! s of the paper's hacksaw with 501 samples.
 
-mod clock;
 mod ending;
 mod instants;
 mod lanes;
 mod request;
 mod state;
+mod stopwatch;
 mod trajectory;
 
 use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::time::Duration;
 
-use clock::Clock;
 use nalgebra::DVector;
+use stopwatch::Stopwatch;
 
 use ending::{Ending, of_state};
 
@@ -250,7 +250,7 @@ pub fn observed(model: &dyn Machine, request: &Request, observer: &mut dyn Obser
 impl Integration<'_> {
     fn recorded(self, model: &dyn Machine, another: Option<&mut dyn Observer>) -> Result<Trajectory, RunError> {
         let Self { request, start, each_step, ending } = self;
-        let clock = Clock::started();
+        let stopwatch = Stopwatch::started();
         let (t0, beginning) = beginning(model, start.as_ref())?;
         let mut method: AnyMethod = request.method();
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
@@ -269,7 +269,7 @@ impl Integration<'_> {
         // What begins may depend on the tolerances.
         let begins = changes.first().is_some_and(|change| change.reason == Reason::First);
         let methods = Some(first).filter(|_| !begins).into_iter().chain(changes.iter().copied()).collect();
-        Made { finish, cause, methods, wall: clock.elapsed() }.concluded(model, recorded(observer), request)
+        Made { finish, cause, methods, wall: stopwatch.elapsed() }.concluded(model, recorded(observer), request)
     }
 }
 

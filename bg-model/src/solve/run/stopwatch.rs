@@ -1,16 +1,16 @@
-//! The wall clock; it stands still where there is none.
+//! Time on the wall clock; zero where there is none.
 
 use std::time::Duration;
 
 /// When a run began.
 #[derive(Clone, Copy, Debug)]
-pub struct Clock {
+pub struct Stopwatch {
     #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
     start: std::time::Instant,
 }
 
 #[cfg(not(all(target_arch = "wasm32", target_os = "unknown")))]
-impl Clock {
+impl Stopwatch {
     /// Now.
     pub fn started() -> Self {
         Self { start: std::time::Instant::now() }
@@ -24,7 +24,7 @@ impl Clock {
 
 /// WebAssembly by itself has no clock: `Instant::now` would panic.
 #[cfg(all(target_arch = "wasm32", target_os = "unknown"))]
-impl Clock {
+impl Stopwatch {
     /// Now.
     pub const fn started() -> Self {
         Self {}
