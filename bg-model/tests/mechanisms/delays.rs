@@ -140,6 +140,32 @@ fn beginners_are_told_what_to_do_about_delays() {
     }
 }
 
+/// Of a signal that a scene proves constant, of one that is seen twice, up to its sign, and of one that nothing sees.
+#[test]
+fn scenes_keep_what_is_delayed() {
+    let text = "graph Late {
+        param level: m = 2; state x: m = -delay(x, 1 s) / 1 s start 1;
+        1 j: translation; I m = 1; MSe f = x * 1 N/m; f -> j -> m; observe { x: m = x; v: m/s = j.flow }
+        scene Constant { observe { known: m = delay(level, 1 s, 2 m); x: m = x; } }
+        scene Twice { observe { once: m = delay(x, 0.5 s); twice: m = delay(x, 500 ms); minus: m = delay(-x, 0.5 s) } }
+        1 k: translation; I n = 1; Se g = 1; g -> k -> n; scene Unseen { observe { w: m/s = k.flow } }
+    }";
+    let graphs = graphs(text);
+    let of = |name: &str| {
+        let model = model(&graphs, name, &[]);
+        let run = Simulation::over(model.clone(), Request { t_end: 2.25, rtol: 1e-11, ..Request::default() }).run();
+        (Machine::description(&*model).states.len(), run.expect("a run"))
+    };
+    let (_, run) = of("Constant");
+    assert_eq!(run["known"].last(), Some(&2.0));
+    assert!((run["x"].last().expect("a sample") - steps(2.25)).abs() < 1e-9);
+    let (_, run) = of("Twice");
+    for (name, sign) in [("once", 1.0), ("twice", 1.0), ("minus", -1.0)] {
+        assert!((sign * run[name].last().expect("a sample") - steps(1.75)).abs() < 1e-9, "{name}");
+    }
+    assert_eq!(of("Unseen").0, 1);
+}
+
 /// What has no past says so.
 #[test]
 fn a_saved_state_and_derivatives_have_no_past() {

@@ -147,8 +147,13 @@ fn delays(equations: &StateEquations) -> Vec<Delay> {
     let delays = clocks.filter_map(|(clock, of)| {
         let of = &equations.delays[of.delay?];
         let [Some(from), Some(until)] = of.window.map(own) else { return None };
-        let signal = |of: &DelayedSignal| (of.coefficients.iter().filter_map(|&c| own(c)).collect(), of.is_given);
-        let signals = of.signals.iter().map(signal).filter(|(states, _): &(Vec<usize>, bool)| !states.is_empty());
+        // A signal that is constant has no first coefficient, and the others stay 0; one that is another's has none.
+        let signal = |of: &DelayedSignal| {
+            own(of.coefficients[0])?;
+            let all: Option<Vec<usize>> = of.coefficients.iter().map(|&coefficient| own(coefficient)).collect();
+            Some((all.expect("what removes one coefficient removes the first"), of.is_given))
+        };
+        let signals = of.signals.iter().filter_map(signal);
         Some(Delay { clock, window: [from, until], signals: signals.collect() })
     });
     delays.collect()

@@ -54,7 +54,16 @@ pub(super) struct Plant {
 impl Plant {
     /// The names of the states that only instants change: what memories keep and samples hold.
     pub fn held(&self) -> Vec<String> {
-        self.model.memories().into_iter().map(|state| self.description.states[state].name.to_owned()).collect()
+        let delays = self.model.delays();
+        let of_delay = |state: &usize| {
+            delays.iter().any(|delay| {
+                let mut signals = delay.states.signals.iter();
+                delay.states.window.contains(state) || signals.any(|signal| signal.coefficients.contains(state))
+            })
+        };
+        let held = self.model.memories().into_iter().filter(|state| !of_delay(state));
+        let held = held.map(|state| self.description.states[state].name.to_owned());
+        held.chain((!delays.is_empty()).then(|| "what `delay` gives".to_owned())).collect()
     }
 
     /// `mechanism` at time `t` (s). Where its switches are in branches that are not known the signs of their guards
