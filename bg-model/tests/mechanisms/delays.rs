@@ -146,7 +146,7 @@ fn scenes_keep_what_is_delayed() {
     let text = "graph Late {
         param level: m = 2; state x: m = -delay(x, 1 s) / 1 s start 1;
         1 j: translation; I m = 1; MSe f = x * 1 N/m; f -> j -> m; observe { x: m = x; v: m/s = j.flow }
-        scene Constant { observe { known: m = delay(level, 1 s, 2 m); x: m = x; } }
+        scene Constant { observe { known: m = delay(level, 1 s, 2 m); x: m = x } tune {} }
         scene Twice { observe { once: m = delay(x, 0.5 s); twice: m = delay(x, 500 ms); minus: m = delay(-x, 0.5 s) } }
         1 k: translation; I n = 1; Se g = 1; g -> k -> n; scene Unseen { observe { w: m/s = k.flow } }
     }";
