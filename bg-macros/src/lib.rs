@@ -10,6 +10,7 @@ use proc_macro::TokenStream;
 /// Compiles multibond graphs of mechanisms, machines and circuits to Rust types that run.
 ///
 // The chapters are one page here and a file each elsewhere: these targets take the place of those at their ends.
+/// [a-delay]: #a-delay
 /// [angles-and-ways]: #angles-and-ways
 /// [arrays-and-repetitions]: #arrays-and-repetitions
 /// [causality]: #causality
@@ -25,6 +26,7 @@ use proc_macro::TokenStream;
 /// [parts]: #parts
 /// [refused-values]: #refused-values
 /// [rigid-joints]: #rigid-joints
+/// [sampled-blocks]: #every
 /// [scenes]: #scenes
 /// [start-poses]: #start-poses
 /// [start-velocities]: #start-velocities
