@@ -403,7 +403,7 @@ impl Race {
         if let Some(runner) = self.hint.and_then(Runner::of)
             && let Some(price) = self.price(runner, flow, scale)
         {
-            self.series = self.series.or((runner == Runner::Taylor).then_some(price));
+            self.series = (runner == Runner::Taylor).then_some(price);
             return;
         }
         self.rest = REST[0];
