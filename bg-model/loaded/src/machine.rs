@@ -34,7 +34,7 @@ impl<S: Scalar> Interpreted<S> {
     /// The clocks, those of delays among them.
     fn all_clocks(&self) -> Vec<Clock<S>> {
         let Some(program) = &self.programs().clocks else { return Vec::new() };
-        clock::listed(&self.blueprint.clocks, |times| {
+        clock::listed(&self.blueprint.clocks, &|times| {
             of_parameters(program, &self.values, &[], Some(&self.decided), times);
         })
     }

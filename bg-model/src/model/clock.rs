@@ -24,7 +24,7 @@ pub struct Clock<S = f64> {
 
 /// The clocks with these switches; `instants` writes of each its period and its first instant, s.
 #[must_use]
-pub fn listed<S: Scalar>(switches: &[usize], instants: impl FnOnce(&mut [S])) -> Vec<Clock<S>> {
+pub fn listed<S: Scalar>(switches: &[usize], instants: &dyn Fn(&mut [S])) -> Vec<Clock<S>> {
     if switches.is_empty() {
         return Vec::new();
     }

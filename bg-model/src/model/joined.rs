@@ -3,7 +3,7 @@
 //! In: models of the same kind, one of their tables. Out: the table each of whose numbers is made of those of all
 //! models.
 
-use alloc::vec::Vec;
+use alloc::vec;
 
 use crate::model::scalar::Scalar;
 
@@ -14,17 +14,15 @@ pub fn joined<Mo, S: Scalar, T: Scalar, const C: usize>(
     of: fn(&[S]) -> T,
 ) -> [T; C] {
     let mut joined = [T::from_f64(0.0); C];
-    let tables: Vec<&[S]> = models.iter().map(|model| &table(model)[..]).collect();
-    join(&tables, of, &mut joined);
+    join(models.len(), &|model, place| table(models[model])[place], of, &mut joined);
     joined
 }
 
-/// Whatever the length of the tables.
-fn join<S: Scalar, T: Scalar>(tables: &[&[S]], of: fn(&[S]) -> T, joined: &mut [T]) {
-    let mut numbers = Vec::with_capacity(tables.len());
+/// Of any kind of models, and whatever the length of the tables: `number` is that of a model in a place.
+fn join<S: Scalar, T: Scalar>(models: usize, number: &dyn Fn(usize, usize) -> S, of: fn(&[S]) -> T, joined: &mut [T]) {
+    let mut numbers = vec![S::from_f64(0.0); models];
     for (place, joined) in joined.iter_mut().enumerate() {
-        numbers.clear();
-        numbers.extend(tables.iter().map(|table| table[place]));
+        numbers.iter_mut().enumerate().for_each(|(model, to)| *to = number(model, place));
         *joined = of(&numbers);
     }
 }

@@ -197,10 +197,14 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Join<'_> {
         Li: Model<Gradient, N, G, M> + 'static,
         Ot: Model<GradientIn<V>, N, G, M> + 'static,
     {
-        let models = self.0.iter().map(|values| lifted(values).map(Rc::new)).collect::<Result<Vec<_>, _>>()?;
+        let (mut models, mut each) = (Vec::new(), Vec::<Rc<dyn Machine<Gradient>>>::new());
+        for values in self.0 {
+            let model = Rc::new(lifted(values)?);
+            each.push(Rc::new(Over::<Rc<Li>, N, G, M>(Rc::clone(&model))));
+            models.push(model);
+        }
         let all = joined(&models.iter().map(|model| &**model).collect::<Vec<_>>(), GradientIn::joined);
-        let each = models.into_iter().map(|model| Rc::new(Over::<Rc<Li>, N, G, M>(model)) as Rc<dyn Machine<Gradient>>);
-        Ok(SideBySide { each: each.collect(), all: Box::new(InVectors::<Ot, N, G>(all)) })
+        Ok(SideBySide { each, all: Box::new(InVectors::<Ot, N, G>(all)) })
     }
 }
 

@@ -5,7 +5,7 @@
 use alloc::vec::Vec;
 use core::ops::Deref;
 
-use nalgebra::SVector;
+use nalgebra::{ArrayStorage, SVector};
 
 use super::{Dynamics, Machine};
 use crate::model::assembly::AssemblyError;
@@ -28,7 +28,7 @@ impl<H: Deref, const N: usize, const G: usize, const M: usize> Over<H, N, G, M> 
     where
         H::Target: System<S, N, G> + Sized,
     {
-        clock::listed(self.0.clocks(), |instants| self.0.instants(instants))
+        clock::listed(self.0.clocks(), &|instants| self.0.instants(instants))
     }
 }
 
@@ -47,14 +47,14 @@ where
     }
 
     fn rate(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]) {
-        let mut rates = SVector::from_column_slice(dx);
-        self.0.rate(t, &SVector::from_column_slice(x), &each(negative), &mut rates);
+        let mut rates = whole(dx);
+        self.0.rate(t, &whole(x), &each(negative), &mut rates);
         dx.copy_from_slice(rates.as_slice());
     }
 
     fn guards(&self, t: S, x: &[S], negative: &[S::Switch], guards: &mut [S]) {
-        let mut values = SVector::from_column_slice(guards);
-        self.0.guards(t, &SVector::from_column_slice(x), &each(negative), &mut values);
+        let mut values = whole(guards);
+        self.0.guards(t, &whole(x), &each(negative), &mut values);
         guards.copy_from_slice(values.as_slice());
     }
 
@@ -75,7 +75,7 @@ where
     }
 
     fn project(&self, t: S, negative: &[S::Switch], x: &mut [S]) {
-        let mut state = SVector::from_column_slice(x);
+        let mut state = whole(x);
         self.0.project(t, &each(negative), &mut state);
         x.copy_from_slice(state.as_slice());
     }
@@ -102,7 +102,7 @@ where
 
     fn hold(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
         if let Some(joints) = self.0.joints() {
-            joints.hold(t, &SVector::from_column_slice(x), &each(negative), entries);
+            joints.hold(t, &whole(x), &each(negative), entries);
         }
     }
 
@@ -116,7 +116,7 @@ where
 
     fn impact(&self, t: S, x: &[S], negative: &[S::Switch], entries: &mut [S]) {
         if let Some(impacts) = self.0.impacts() {
-            impacts.impact(t, &SVector::from_column_slice(x), &each(negative), entries);
+            impacts.impact(t, &whole(x), &each(negative), entries);
         }
     }
 
@@ -126,8 +126,8 @@ where
 
     fn energy(&self, t: S, x: &[S], negative: &[S::Switch], curvatures: &mut [S]) -> S {
         let Some(storages) = self.0.storages() else { return S::from_f64(0.0) };
-        let mut values = SVector::from_column_slice(curvatures);
-        let energy = storages.energy(t, &SVector::from_column_slice(x), &each(negative), &mut values);
+        let mut values = whole(curvatures);
+        let energy = storages.energy(t, &whole(x), &each(negative), &mut values);
         curvatures.copy_from_slice(values.as_slice());
         energy
     }
@@ -160,26 +160,31 @@ where
     }
 
     fn outputs(&self, t: S, x: &[S], negative: &[S::Switch], y: &mut [S]) {
-        let mut outputs = SVector::from_column_slice(y);
-        self.0.outputs(t, &SVector::from_column_slice(x), &each(negative), &mut outputs);
+        let mut outputs = whole(y);
+        self.0.outputs(t, &whole(x), &each(negative), &mut outputs);
         y.copy_from_slice(outputs.as_slice());
     }
 
     fn stored_energy(&self, t: S, x: &[S], negative: &[S::Switch]) -> S {
-        self.0.stored_energy(t, &SVector::from_column_slice(x), &each(negative))
+        self.0.stored_energy(t, &whole(x), &each(negative))
     }
 
     fn shown(&self, t: f64, x: &[f64], negative: &[bool], shown: &mut Vec<f64>) {
-        self.0.shown(t, &SVector::from_column_slice(x), &each(negative), shown);
+        self.0.shown(t, &whole(x), &each(negative), shown);
     }
 
     fn powers(&self, t: S, x: &[S], negative: &[S::Switch]) -> Powers<S> {
-        self.0.powers(t, &SVector::from_column_slice(x), &each(negative))
+        self.0.powers(t, &whole(x), &each(negative))
     }
 
     fn constants(&self) -> &[S] {
         self.0.reversed().map_or(&[], Reversed::constants)
     }
+}
+
+/// The numbers as a system takes them, a copy.
+fn whole<S: Copy, const N: usize>(of: &[S]) -> SVector<S, N> {
+    SVector::from_array_storage(ArrayStorage([*of.first_chunk().expect("there is a number for each")]))
 }
 
 /// The branches in an array.

@@ -59,7 +59,7 @@ where
 {
     /// The clocks, those of delays among them.
     fn all_clocks(&self) -> Vec<Clock<f64>> {
-        clock::listed(self.of.clocks(), |instants| self.of.instants(instants))
+        clock::listed(self.of.clocks(), &|instants| self.of.instants(instants))
     }
 
     /// The elimination made for the system's sparsity.

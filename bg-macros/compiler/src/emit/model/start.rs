@@ -47,7 +47,7 @@ impl Emission<'_> {
         });
         let start = quote! {
             fn start(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
-                let mut x = SVector::<S, #n>::from_element(S::from_f64(0.0));
+                let mut x = SVector::from([S::from_f64(0.0); #n]);
                 ::bg_model::__private::start(self, #over, x.as_mut_slice())?;
                 Ok(x)
             }
