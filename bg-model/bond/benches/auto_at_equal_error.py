@@ -4,9 +4,10 @@
 
 Each model runs by `auto` and by each explicit method at a relative tolerance in each decade; errors as in errors_by_method.py. What a run takes
 is its rates, an order of a Taylor series counted as 1.6 of them and a Jacobian with its factorisation as 30: what they cost on the hacksaw in
-the plane. A rate of Nystrom's, with second derivatives, takes somewhat more than another and counts as one. It is counted, so races, trials, events and rejected steps are in it, and the machine is not. What a method takes for the error that
-`auto` has is interpolated between its neighbouring tolerances, in logarithms; of several places with this error the cheapest counts, and where
-its loosest tolerance errs less, that run.
+the plane. A rate of Nystrom's, with second derivatives, takes somewhat more than another and counts as one. It is counted, so
+races, trials, events and rejected steps are in it, and the machine is not. What a method takes for the error that `auto` has is
+interpolated between its neighbouring tolerances, in logarithms; of several places with this error the cheapest counts, and
+where its loosest tolerance errs less, that run.
 """
 
 import json

@@ -60,7 +60,9 @@ def accelerations(q, v, with_b=True, with_others=True):
     m2, m3, m4, m5 = MASSES
     j2, j3, j4, j5 = INERTIAS
     if not with_others:
-        return numpy.array([0, 0, 0, -m3 * fbx, -m3 * fby, j3 * (by * fbx - bx * fby), m4 * fbx, m4 * fby, j4 * (px * fby - py * fbx), 0, 0, 0])
+        of_rod = [-m3 * fbx, -m3 * fby, j3 * (by * fbx - bx * fby)]
+        of_frame = [m4 * fbx, m4 * fby, j4 * (px * fby - py * fbx)]
+        return numpy.array([0, 0, 0, *of_rod, *of_frame, 0, 0, 0])
     s2, c2, s5, c5 = math.sin(a2), math.cos(a2), math.sin(a5), math.cos(a5)
     ax, ay = CRANK * c2, CRANK * s2
     fox, foy = -1e7 * (x2 - ax) - 0.5 * (vx2 + w2 * ay), -1e7 * (y2 - ay) - 0.5 * (vy2 - w2 * ax)
@@ -150,13 +152,14 @@ def dop853(f, s, h, steps):
 
 
 def nystrom(f, s, h, steps):
-    first, second = (literal(f"{INTEGRATORS}/nystrom/tableau.rs", name) for name in ("FIRST", "SECOND"))
+    tableau = f"{INTEGRATORS}/nystrom/tableau.rs"
+    first, second, instants = (literal(tableau, name) for name in ("FIRST", "SECOND", "INSTANTS"))
     for _ in range(steps):
         q, v = s[:12], s[12:]
         k = [f.accelerations(q, v)]
-        instants = literal(f"{INTEGRATORS}/nystrom/tableau.rs", "INSTANTS") if _ == 0 else instants
         for stage in range(1, 10):
-            at = (q + h * ((instants[stage] if stage < 9 else 1.0) * v + h * sum(w * k for w, k in zip(second[stage], k))), v + h * sum(w * k for w, k in zip(first[stage], k)))
+            sums = [sum(weight * k for weight, k in zip(weights[stage], k)) for weights in (first, second)]
+            at = (q + h * ((instants[stage] if stage < 9 else 1.0) * v + h * sums[1]), v + h * sums[0])
             if stage < 9:
                 k.append(f.accelerations(*at))
         s = numpy.concatenate(at)
@@ -249,7 +252,11 @@ def exprb43(f, s, h, steps):
 
 def gauss6(f, s, h, steps):
     root = math.sqrt(15)
-    a = numpy.array([[5 / 36, 2 / 9 - root / 15, 5 / 36 - root / 30], [5 / 36 + root / 24, 2 / 9, 5 / 36 - root / 24], [5 / 36 + root / 30, 2 / 9 + root / 15, 5 / 36]])
+    a = numpy.array([
+        [5 / 36, 2 / 9 - root / 15, 5 / 36 - root / 30],
+        [5 / 36 + root / 24, 2 / 9, 5 / 36 - root / 24],
+        [5 / 36 + root / 30, 2 / 9 + root / 15, 5 / 36],
+    ])
     b = numpy.array([5 / 18, 4 / 9, 5 / 18])
     k = numpy.tile(f(s), 3)
     for _ in range(steps):
