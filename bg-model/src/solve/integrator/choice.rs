@@ -10,9 +10,7 @@ use core::str::FromStr;
 
 use thiserror::Error;
 
-use super::{
-    AnyMethod, Ark5, Auto, Bs5, Cfmr7, Dop853, Gauss6, Method, Nystrom, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor,
-};
+use super::{AnyMethod, Ark5, Auto, Bs5, Cfmr7, Dop853, Gauss6, Nystrom, Radau5, Radau9, Rk4, Rodas5p, Ros2, Taylor};
 
 /// An integrator of this crate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -117,9 +115,10 @@ impl Integrator {
 
     /// The one of those that `auto` chooses among whose method has this name, as in [`Change::method`](super::Change);
     /// none where it is another one's.
+    #[cfg(feature = "std")]
     #[must_use]
     pub(crate) fn of_auto(name: &str) -> Option<Self> {
-        Self::OF_AUTO.into_iter().find(|one| one.method(1.0).name() == name)
+        Self::OF_AUTO.into_iter().find(|one| super::Method::name(&one.method(1.0)) == name)
     }
 
     /// Whether its steps have a fixed size, which then takes the place of tolerances.
