@@ -226,6 +226,12 @@ pub struct IntegrationArguments {
 }
 
 impl IntegrationArguments {
+    /// Those of a run to `t` (s), whose end alone is asked for.
+    pub fn to(t: f64, method: Integrator, rtol: f64) -> Self {
+        let fixed_step = Request::default().fixed_step;
+        Self { t_end: t, method, hint: None, fixed_step, rtol, atol: None, step: t }
+    }
+
     /// The same, not yet checked.
     pub const fn integration(&self) -> Integration {
         let &Self { t_end, method, hint, fixed_step, rtol, atol, step } = self;
@@ -400,16 +406,7 @@ impl LinearizeArguments {
 
     /// How the run to `t` (s) is made.
     pub fn integration(&self, t: f64) -> IntegrationArguments {
-        let Self { method, rtol, .. } = *self;
-        IntegrationArguments {
-            t_end: t,
-            method,
-            hint: None,
-            fixed_step: Request::default().fixed_step,
-            rtol,
-            atol: None,
-            step: t,
-        }
+        IntegrationArguments::to(t, self.method, self.rtol)
     }
 }
 

@@ -160,16 +160,7 @@ impl CampbellArguments {
 
     /// How the run to `t` (s) is made.
     fn integration(&self, t: f64) -> IntegrationArguments {
-        let Self { method, rtol, .. } = *self;
-        IntegrationArguments {
-            t_end: t,
-            method,
-            hint: None,
-            fixed_step: Request::default().fixed_step,
-            rtol,
-            atol: None,
-            step: t,
-        }
+        IntegrationArguments::to(t, self.method, self.rtol)
     }
 }
 
