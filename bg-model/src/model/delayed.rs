@@ -18,14 +18,10 @@ pub(crate) fn read<S: Scalar>(system: &dyn Dynamics<S>, delays: &[Delay<S>], t: 
 
 /// Writes the states of the delays at a start at `t` (s): what the signals were before it is what is given, else what
 /// they are there.
-pub(crate) fn begin<S: Scalar>(system: &dyn Dynamics<S>, t: f64, negative: &[bool], x: &mut [S]) {
-    let delays = system.delays();
-    if delays.is_empty() {
-        return;
-    }
+pub(crate) fn begin<S: Scalar>(system: &dyn Dynamics<S>, delays: &[Delay<S>], t: f64, negative: &[bool], x: &mut [S]) {
     let mut now = x.to_vec();
-    read(system, &delays, S::from_f64(t), negative, &mut now);
-    for Delay { time, states: States { window: [from, until], signals, .. }, .. } in &delays {
+    read(system, delays, S::from_f64(t), negative, &mut now);
+    for Delay { time, states: States { window: [from, until], signals, .. }, .. } in delays {
         (x[*from], x[*until]) = (S::from_f64(t), S::from_f64(t) + *time);
         for Signal { coefficients, is_given } in *signals {
             if let ([first, others @ ..], false) = (coefficients, is_given) {

@@ -169,7 +169,10 @@ pub fn start<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut 
 
 fn started<S: Scalar>(of: &dyn Starting<S>, system: &dyn Dynamics<S>, x: &mut [S]) -> Result<S, AssemblyError> {
     let lost = assembled(of, system, x)?;
-    delayed::begin(system, 0.0, &branches(system, 0.0, x), x);
+    let delays = system.delays();
+    if !delays.is_empty() {
+        delayed::begin(system, &delays, 0.0, &branches(system, 0.0, x), x);
+    }
     let clocks = system.clocks();
     if clock::is_due(&clocks, 0.0) {
         sampled::compute_due(system, &clocks, 0.0, &branches(system, 0.0, x), x);

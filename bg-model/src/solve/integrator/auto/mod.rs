@@ -102,9 +102,9 @@ impl Kind {
     /// That of the method of this name; none where it is none of them.
     const fn of(method: Integrator) -> Option<Self> {
         match method {
-            Integrator::Dop853 | Integrator::Cfmr7 | Integrator::Nystrom | Integrator::Taylor => Some(Self::Explicit),
             Integrator::Ark5 => Some(Self::Partitioned),
             Integrator::Radau9 => Some(Self::Implicit),
+            _ if Race::runs(method) => Some(Self::Explicit),
             _ => None,
         }
     }

@@ -248,6 +248,11 @@ impl Race {
         }
     }
 
+    /// Whether the method of this name is one of these.
+    pub const fn runs(method: Integrator) -> bool {
+        Runner::of(method).is_some()
+    }
+
     /// The method of this name begins, if it is one of these and the system has what it needs; there is no race for as
     /// long as possible.
     pub fn beginning_with(hint: Option<Integrator>) -> Self {
