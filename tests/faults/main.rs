@@ -221,7 +221,18 @@ const VALUES: [(&str, &str); 4] = [
 ];
 
 /// More of what has a code: other words of it, and where they stand.
-const MORE: [(&str, &str); 71] = [
+const MORE: [(&str, &str); 73] = [
+    (
+        "BG0209",
+        "body rod { sphere radius 1; density 1; }\n\
+         joint hook: universal x y (ground -> rod) { rigid; } drive push on ▸hook torque = 1;",
+    ),
+    (
+        "BG0505",
+        "body rod { sphere radius 1; density 1; }\n\
+         1 up: translation; TF z(v) = dot([0, 0, 1], v); rod.translation -> z -> up -> floor;\n\
+         rSe floor = 0 at ▸rod.position.x;",
+    ),
     ("BG0102", "every ▸{ sample a: 1 = 2; }"),
     ("BG0101", "every 1 ms { ▸let a = 2; }"),
     ("BG0113", "every 1 ms { sample ▸a = 2; }"),

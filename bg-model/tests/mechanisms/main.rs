@@ -2,6 +2,7 @@
 
 mod all_reactions;
 mod angles;
+mod ball_balancer;
 mod ball_on_plate;
 mod bricard;
 mod closed_loops;

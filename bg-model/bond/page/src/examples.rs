@@ -35,7 +35,7 @@ pub struct Offered {
 const FIRST: &str = include_str!("../../src/first.bond");
 
 /// Mechanisms with loops and contacts, examples of the program `bond`: names, titles, what to look at, texts.
-const MECHANISMS: [[&str; 4]; 7] = [
+const MECHANISMS: [[&str; 4]; 8] = [
     [
         "governor",
         "A Watt governor",
@@ -77,6 +77,12 @@ const MECHANISMS: [[&str; 4]; 7] = [
         "A ball on a plate",
         "Look at `x` and `z`: the plate tilts so that the ball rolls to its middle.",
         include_str!("../../examples/ball_on_plate.bond"),
+    ],
+    [
+        "ball_balancer",
+        "An inverted pendulum on a ball",
+        "Look at `lean_x` and `x`: to stand upright the frame first goes after the way it falls, then back.",
+        include_str!("../../examples/ball_balancer.bond"),
     ],
 ];
 

@@ -2,6 +2,7 @@
 //!
 //! In: `ast::Spring`, `ast::Drive`, `ast::Contact`. Out: bond-graph words.
 
+use super::fault::Takes;
 use super::{End, Expansion, MechanismFault, expression};
 use crate::fault::near_miss;
 use crate::source::ast::{
@@ -106,14 +107,21 @@ impl Expansion<'_> {
     pub(super) fn drive(&mut self, drive: &Drive) {
         if let Some(joint) = self.joints.get(drive.target.text.as_str()) {
             let kind = joint.kind;
+            let any_axis = kind.turns_freely().then_some(("twist", "rotation"));
             let wanted = match drive.kind {
-                DriveKind::Torque => kind.spin().map(|_| ("spin", "rotation")),
+                DriveKind::Torque => kind.spin().map(|_| ("spin", "rotation")).or(any_axis),
                 DriveKind::Force => kind.slide().map(|_| ("slide", "translation")),
                 DriveKind::Speed => {
                     kind.spin().map(|_| ("spin", "rotation")).or(kind.slide().map(|_| ("slide", "translation")))
                 }
             };
-            let takes = if kind.spin().is_some() { "torque" } else { "force" };
+            let takes = if kind.spin().is_some() || kind.turns_freely() {
+                Takes::Torque
+            } else if kind.slide().is_some() {
+                Takes::Force
+            } else {
+                Takes::Nothing
+            };
             match wanted {
                 Some((axis, domain)) => self.drive_joint(drive, axis, domain),
                 None => self.wrong_drive(drive, takes),
@@ -124,8 +132,8 @@ impl Expansion<'_> {
         match drive.kind {
             DriveKind::Torque if is_body => self.drive_body(drive),
             DriveKind::Force if self.is_known(&drive.target) => self.drive_point(drive),
-            _ if is_body => self.wrong_drive(drive, "torque"),
-            _ if self.is_known(&drive.target) => self.wrong_drive(drive, "force"),
+            _ if is_body => self.wrong_drive(drive, Takes::Torque),
+            _ if self.is_known(&drive.target) => self.wrong_drive(drive, Takes::Force),
             _ => {
                 let known = self.joints.keys().chain(self.bodies.keys()).copied();
                 let near = near_miss(&drive.target.text, known).map(str::to_owned);
@@ -139,7 +147,7 @@ impl Expansion<'_> {
         self.bodies.contains_key(self.on_body(&target.text).0)
     }
 
-    fn wrong_drive(&mut self, drive: &Drive, takes: &'static str) {
+    fn wrong_drive(&mut self, drive: &Drive, takes: Takes) {
         let what = match drive.kind {
             DriveKind::Torque => "torque",
             DriveKind::Force => "force",

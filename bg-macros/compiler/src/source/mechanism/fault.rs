@@ -14,7 +14,7 @@ pub enum MechanismFault {
     MassTwice { name: String },
     Twice { word: &'static str },
     UnknownTarget { name: String, near: Option<String> },
-    WrongDrive { drive: &'static str, target: String, takes: &'static str },
+    WrongDrive { drive: &'static str, target: String, takes: Takes },
     SameBody { name: String, body: String },
     SameAxes { name: String },
     NoLaw { name: String },
@@ -27,6 +27,17 @@ pub enum MechanismFault {
     UnknownTable { name: String, near: Option<String> },
     RoughProfile { table: String, contact: String },
     OpenProfile { table: String, contact: String },
+}
+
+/// What a drive on a target has to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// A torque.
+    Torque,
+    /// A force.
+    Force,
+    /// Nothing drives it.
+    Nothing,
 }
 
 use MechanismFault as F;
@@ -122,7 +133,11 @@ impl Explain for MechanismFault {
             F::Twice { word: "ground" } => "put the points of both into one `ground`".to_owned(),
             F::Twice { word } => format!("remove one `{word}`"),
             F::UnknownTarget { .. } => "name a joint, a body, or a body's point".to_owned(),
-            F::WrongDrive { takes, .. } => format!("write `{takes} = ...`"),
+            F::WrongDrive { takes: Takes::Torque, .. } => "write `torque = ...`".to_owned(),
+            F::WrongDrive { takes: Takes::Force, .. } => "write `force = ...`".to_owned(),
+            F::WrongDrive { takes: Takes::Nothing, .. } => {
+                "it has no one axis to turn about or slide along: drive one of its bodies".to_owned()
+            }
             F::SameBody { .. } => "join two bodies".to_owned(),
             F::SameAxes { .. } => "give two different axes, such as `universal x y`".to_owned(),
             F::NoLaw { .. } => "add one, such as `y: C = k, R = r;`".to_owned(),

@@ -32,9 +32,15 @@ impl JointKind {
         }
     }
 
+    /// Whether a drive can turn it about any axis.
+    #[must_use]
+    pub fn turns_freely(self) -> bool {
+        matches!(self, Self::Spherical)
+    }
+
     /// Whether it holds any rotation.
     fn holds_rotation(self) -> bool {
-        !matches!(self, Self::Spherical)
+        !self.turns_freely()
     }
 }
 
@@ -319,7 +325,7 @@ impl Expansion<'_> {
         );
     }
 
-    /// The held rotations and the free one; false where there is neither.
+    /// The held rotations and the free ones that something turns; false where there is neither.
     fn rotations(&mut self, joint: &Joint, a: &End, b: &End) -> bool {
         let (name, span) = (&joint.name.text, joint.name.span);
         let spin = joint.kind.spin().filter(|_| self.is_used(joint, "spin"));
@@ -330,7 +336,8 @@ impl Expansion<'_> {
             // It starts in the middle of its play.
             self.text(span, &format!("close {name} = {};", rotation.displacement));
         }
-        if held.is_empty() && spin.is_none() {
+        let turned = joint.kind.turns_freely() && self.is_used(joint, "twist");
+        if held.is_empty() && spin.is_none() && !turned {
             return false;
         }
         self.text(

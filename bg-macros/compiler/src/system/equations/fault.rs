@@ -18,7 +18,7 @@ pub enum EquationFault {
     EnergyOfOtherLaw { symbol: &'static str, name: String },
     EnergyJumps { symbol: &'static str, name: String, by: f64, at: Vec<f64> },
     EnergyNotCompared { symbol: &'static str, name: String, points: usize },
-    DisplacementOfOtherFlow { name: String },
+    DisplacementOfOtherFlow { name: String, is_sink: bool },
     FrictionOfReaction { name: String, by: String },
     CannotStick { name: String, input: Option<String> },
     CannotStop { name: String },
@@ -111,8 +111,9 @@ impl Explain for EquationFault {
                 "the energy given for {symbol} `{name}` could not be compared with its law: at most of {points} points one \
                  of them is not a finite number"
             ),
-            F::DisplacementOfOtherFlow { name } => {
-                format!("the displacement given for C `{name}` does not change with the flow of its bond")
+            F::DisplacementOfOtherFlow { name, is_sink } => {
+                let (what, symbol) = if *is_sink { ("gap", "rSe") } else { ("displacement", "C") };
+                format!("the {what} given for {symbol} `{name}` does not change with the flow of its bond")
             }
             F::FrictionOfReaction { name, by } if name == by => {
                 format!("the friction of R `{name}` depends on its own effort")
@@ -170,6 +171,10 @@ impl Explain for EquationFault {
             }
             F::EnergyNotCompared { .. } => {
                 "write law and energy so that they are finite for states of either sign, with `abs` or `if`".to_owned()
+            }
+            F::DisplacementOfOtherFlow { is_sink: true, .. } => {
+                "write a gap of the poses that this flow opens, or leave `at` out where there is none: a wheel that rolls"
+                    .to_owned()
             }
             F::DisplacementOfOtherFlow { .. } => {
                 "leave `at` out, then the displacement is a state of its own".to_owned()

@@ -122,9 +122,9 @@ impl Signals<'_> {
         let proved = rates.iter().zip(&flow.0).all(|(&rate, &flow)| {
             same_polynomial(&mut self.pool, rate, flow) || same_at_places(&mut self.pool, rate, flow)
         });
-        let name = graph.node(node).name.text.clone();
+        let (name, is_sink) = (graph.node(node).name.text.clone(), graph.element(node)?.kind == ElementKind::RSe);
         let is_known = self.pool.symbols(&flow.0).into_iter().all(|symbol| number(symbol).is_none());
-        (!proved && is_known).then(|| Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name }))
+        (!proved && is_known).then(|| Fault::new(term.span, &EquationFault::DisplacementOfOtherFlow { name, is_sink }))
     }
 
     /// The value with the algebraic loops solved that it needs.
