@@ -14,21 +14,20 @@ bond_graph! {
         }
     }
 
-    /// Four rods on rigid hinges, two about z and two about y: a motor that reverses turns the first one, a brake holds the last one.
+    /// Three rods on rigid hinges, two about y and one about z: a motor that reverses turns the first one, a brake holds the last one.
     pub graph Whip {
         param torque: N*m = 20;
         param grip: N*m = 0.2, at least 0;
         gravity [0, -9.81, 0];
         ground { point O = [0, 0, 0]; }
-        part link[i in 0..4]: Rod { place = i; }
+        part link[i in 0..3]: Rod { place = i; }
         joint shoulder: revolute y (ground.O -> link[0].rod.foot) { rigid; }
         joint second: revolute z (link[0].rod.head -> link[1].rod.foot) { rigid; }
-        joint third: revolute y (link[1].rod.head -> link[2].rod.foot) { rigid; }
-        joint last: revolute z (link[2].rod.head -> link[3].rod.foot) { rigid; }
+        joint last: revolute y (link[1].rod.head -> link[2].rod.foot) { rigid; }
         drive motor on shoulder torque = if shoulder.angle > 0.3 { -torque } else { torque };
         friction brake on last { coulomb grip; }
         observe {
-            tip: m = link[3].rod.head.position; gap: m = last.gap;
+            tip: m = link[2].rod.head.position; gap: m = last.gap;
             stored: J = stored_energy; supplied: J = integral(supplied_power); dissipated: J = integral(dissipated_power)
         }
     }

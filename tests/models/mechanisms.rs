@@ -110,5 +110,7 @@ bond_graph! {
             supplied: J = integral(supplied_power);
             dissipated: J = integral(dissipated_power);
         }
+        scenes only;
+        scene FlyballGovernor { expect states = 8; }
     }
 }

@@ -73,6 +73,30 @@ fn a_crank_moves_a_rocker_across_by_a_rod_on_balls() {
     assert!(y[6] < 1e-10, "{}", y[6]);
 }
 
+/// A four-bar whose coupler lies beside its cranks, as it has to: a mechanism of the plane, as far as the motion goes.
+#[test]
+fn links_that_lie_beside_each_other_close_a_loop() {
+    let text = "graph Beside {
+        gravity [0, -9.81, 0];
+        ground { point O = [0, 0, 0]; point C = [0.4, 0, 0]; }
+        body crank { mass 1; inertia [1e-3, 1e-3, 2e-3]; point foot = [0, -0.05, 0]; point head = [0, 0.05, 0.02];
+            start foot at [0, 0, 0]; }
+        body coupler { mass 2; inertia [1e-3, 2e-2, 2e-2]; point left = [-0.2, 0, 0]; point right = [0.2, 0, 0];
+            start left at [0, 0.1, 0.02]; start turned rotation_z(guess(0.3)); }
+        body rocker { mass 1; inertia [1e-2, 1e-3, 1e-2]; point foot = [0, -0.12, 0]; point head = [0, 0.12, 0.02];
+            start foot at [0.4, 0, 0]; start turned rotation_z(guess(-0.1)); }
+        joint o: revolute z (ground.O -> crank.foot) { rigid; }
+        joint a: revolute z (crank.head -> coupler.left) { rigid; }
+        joint b: revolute z (coupler.right -> rocker.head) { rigid; }
+        joint c: revolute z (ground.C -> rocker.foot) { rigid; }
+        drive motor on o torque = 0.5;
+        observe { turned: rad = o.angle; swung: rad = c.angle; coupler.position; gap: m = norm(b.gap); stored_energy }
+        scenes only; scene All { all reactions; } scene Few { expect planar; }
+    }";
+    let (y, _) = end_alike(text, 7, 0.7, 1e-8);
+    assert!(y[0] > 2.0 && y[4] == 0.02 && y[5] < 1e-12, "{y:?}");
+}
+
 /// Nothing acts on a satellite with an arm of a hinge and a slide: its momenta and its energy are kept.
 #[test]
 fn a_satellite_keeps_its_momenta() {

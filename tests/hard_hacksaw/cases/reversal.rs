@@ -20,8 +20,12 @@ bg_model::bond_graph! {
             dissipated_energy: J = integral(dissipated_power);
         }
 
+        scenes only;
         /// In the plane.
-        scene Reversal { tune { reversal } expect planar; }
+        scene Reversal {
+            tune { reversal, crank_angle, r_2, r_2r, r_23, r_23r, r_34, r_34r, r_15, r_15r, r_45, r_45r }
+            expect planar;
+        }
         /// In the plane, the blade off the work, no drive: with dampings of 0 energy is conserved.
         scene Coasting {
             without { cut, motor }

@@ -96,6 +96,7 @@ bond_graph! {
             epsilon_rate: rad/s = pin_a7.speed;
         }
 
+        scenes only;
         /// On bushings: the 42 states of seven bodies in the plane.
         scene PlanarSqueezer { angles; expect planar; expect states = 42; }
         /// On ideal pins.

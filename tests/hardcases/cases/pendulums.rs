@@ -22,6 +22,7 @@ bond_graph! {
         spring bar (ground.O -> bob) { stiffness stiffness; length 1; }
         observe { x: m = bob.position.x; y: m = bob.position.y; u: m/s = bob.velocity.x; v: m/s = bob.velocity.y; }
 
+        scenes only;
         /// In the plane.
         scene SpringPendulum { expect planar; expect states = 4; }
     }
@@ -45,6 +46,7 @@ bond_graph! {
         observe {
             x: m = bar.end.position.x; y: m = bar.end.position.y; u: m/s = bar.end.velocity.x; v: m/s = bar.end.velocity.y;
         }
+        scenes only;
         /// On a compliant pin.
         scene CompliantPendulum { expect planar; }
         /// On an ideal one.
@@ -62,6 +64,7 @@ bond_graph! {
         spring upper_bar (ground.O -> upper) { stiffness stiffness; damping damping; length 1; }
         spring lower_bar (upper -> lower) { stiffness stiffness; damping damping; length 1; }
         observe { p1: m = upper.position; p2: m = lower.position; v1: m/s = upper.velocity; v2: m/s = lower.velocity; }
+        scenes only;
         /// In the plane.
         scene CompliantDoublePendulum {
             observe {
@@ -98,6 +101,7 @@ bond_graph! {
         lower_bar.ends -> lower_bar.slip -> lower_bar.direction -> lower_bar.stretch -> lower_bar.rod;
 
         observe { p1: m = upper.position; }
+        scenes only;
         /// In the plane.
         scene RigidDoublePendulum {
             observe {

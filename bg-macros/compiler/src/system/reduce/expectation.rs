@@ -193,7 +193,7 @@ fn integrated(report: &Report) -> Vec<String> {
 
 /// The pose components out of a coordinate plane that are not proved constant: of that for which they are fewest, of
 /// several the first of x-y, y-z and z-x.
-fn out_of_plane(report: &Report) -> Vec<String> {
+pub(super) fn out_of_plane(report: &Report) -> Vec<String> {
     let moves = |fate: &Fate| !matches!(fate, Fate::Constant(_));
     let out_of = |normal: usize| -> Vec<String> {
         let fates = report.fates.iter().filter(|(state, fate)| moves(fate) && state.origin.leaves_plane(normal));

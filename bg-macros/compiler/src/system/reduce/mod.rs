@@ -126,12 +126,17 @@ pub fn for_scene(
     let mut report = Report::new(&equations);
     report.count("literal", equations.states.len(), operations(&mut equations));
     run(&PARAMETERS, &mut equations, wanted, &mut report, operations);
-    let by_tree = match in_joint_coordinates(&equations, wanted, &report, operations) {
+    let before = (equations.clone(), report.clone());
+    let mut by_tree = match in_joint_coordinates(before.clone(), wanted, tree::Which::NotFlat, operations) {
         Some(Jointed { equations, report, is_long: true }) => return (equations, report),
         by_tree => by_tree,
     };
     run(&STATES, &mut equations, wanted, &mut report, operations);
     run(&JOINTS, &mut equations, wanted, &mut report, operations);
+    // What lies flat is moved out of its plane as soon as a force may be across it, as far as this can prove.
+    if by_tree.is_none() && !expectation::out_of_plane(&report).is_empty() {
+        by_tree = in_joint_coordinates(before, wanted, tree::Which::All, operations);
+    }
     match by_tree {
         Some(by_tree) if cost(&by_tree.equations, &by_tree.report) < cost(&equations, &report) => {
             (by_tree.equations, by_tree.report)
@@ -170,16 +175,15 @@ fn run(
 
 /// The reduced equations with bodies on trees of joints by the joints' coordinates, where there are such.
 fn in_joint_coordinates(
-    equations: &StateEquations,
+    (mut equations, mut report): (StateEquations, Report),
     wanted: &Wanted,
-    report: &Report,
+    which: tree::Which,
     operations: &mut Operations<'_>,
 ) -> Option<Jointed> {
-    if !wanted.speeds || !wanted.links.is_empty() || !tree::may_apply(equations) {
+    if !wanted.speeds || !wanted.links.is_empty() || !tree::may_apply(&equations) {
         return None;
     }
-    let (mut equations, mut report) = (equations.clone(), report.clone());
-    tree::put(&mut equations, &mut report)?;
+    tree::put(&mut equations, &mut report, which)?;
     report.count("joints by their coordinates", equations.states.len(), operations(&mut equations));
     let all = tree::speeds(&equations);
     run(&STATES, &mut equations, wanted, &mut report, operations);

@@ -53,6 +53,7 @@ bond_graph! {
             stiffness stiffness; damping 100; tilt stiffness 1e3; tilt damping 1;
         }
         observe { angle: rad = rod.angle; pin.force; pull: N = norm(pin.force); lost: J = integral(dissipated_power) }
+        scenes only;
         /// In the plane.
         scene Swing {
             observe { angle: rad = rod.angle; force: N = pin.force.y }
@@ -117,6 +118,7 @@ bond_graph! {
         joint shoulder: revolute z (ground.O -> upper.top) { stiffness 1e7; tilt stiffness 1e3; }
         joint elbow: revolute z (upper.bottom -> lower.top) { stiffness 1e7; tilt stiffness 1e3; }
         observe { upper: rad = shoulder.angle; elbow: rad = elbow.angle }
+        scenes only;
         scene DoubleIdeal { rigid joints; expect planar; expect independent speeds; }
         scene DoubleWithAll { rigid joints; all reactions; expect planar; }
         scene DoublePlane { expect planar; }
@@ -246,6 +248,7 @@ bond_graph! {
         }
         drive push on slider force = [load, 0, 0];
         observe { angle: rad = crank.angle; x: m = slider.position.x }
+        scenes only;
         scene CrankIdeal { rigid joints; tune { load } expect planar; expect independent speeds; }
         scene CrankWithAll { rigid joints; all reactions; tune { load } expect planar; }
     }

@@ -55,8 +55,17 @@ pub(super) fn is_put(equations: &StateEquations) -> bool {
     speeds(equations) > 0
 }
 
+/// Which trees are taken.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Which {
+    /// Those that do not lie flat in the x-y plane, where bodies' own momenta take fewer operations.
+    NotFlat,
+    /// All.
+    All,
+}
+
 /// Takes the bodies of trees of joints out of the equations; none where there are none, or something does not fit.
-pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option<()> {
+pub(super) fn put(equations: &mut StateEquations, report: &mut Report, which: Which) -> Option<()> {
     equations.rewrite(&|pool, ids| numbers::folded(pool, ids));
     let bodies = bodies::of(equations);
     let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
@@ -64,7 +73,7 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report) -> Option
     let mut literal = Literal::of(equations);
     let spins = places_of_spins(&mut equations.pool, &bodies);
     equations.rewrite(&|pool, ids| exchange(pool, ids, &spins));
-    let joints = joints(equations, &bodies, (&parameters, &guessed))?;
+    let joints = joints(equations, &bodies, (&parameters, &guessed), which)?;
     let of_bodies: BTreeSet<usize> = joints.iter().flat_map(|joint| bodies[joint.child].states()).collect();
     let given: BTreeSet<usize> = joints.iter().flat_map(|joint| joint.given(&bodies)).collect();
     let start = Environment { states: &guessed.start, parameters: &parameters, ..Environment::default() };
@@ -255,15 +264,16 @@ fn names(joint: &Joint, step: usize) -> [String; 2] {
     ["q", "u"].map(|letter| format!("{}.{letter}{number}", joint.name))
 }
 
-/// The joints of trees on the ground, parents first, where they do not all turn in the plane.
+/// The joints of trees on the ground, parents first.
 fn joints(
     equations: &mut StateEquations,
     bodies: &[Body],
     (parameters, guessed): (&[f64], &Guessed),
+    which: Which,
 ) -> Option<Vec<Joint>> {
     let starts = Environment { states: &guessed.start, parameters, ..Environment::default() };
     let joints = recognition::of(equations, bodies, &starts, guessed);
-    (!is_planar(&joints)).then_some(joints)
+    (which == Which::All || !is_flat(&equations.pool, bodies, &joints)).then_some(joints)
 }
 
 /// Takes the reactions of joints out of the equations; they do not work on the motions of these bodies. Gives those that
@@ -372,8 +382,10 @@ fn places_of_spins(pool: &mut Pool, bodies: &[Body]) -> BTreeMap<Id, Id> {
     places
 }
 
-/// Whether all joints move in the x-y plane, in which bodies' own momenta take fewer operations.
-fn is_planar(joints: &[Joint]) -> bool {
+/// Whether all joints move in the x-y plane, with their points at the height of the bodies' centres and these bodies' third
+/// axes principal ones.
+fn is_flat(pool: &Pool, bodies: &[Body], joints: &[Joint]) -> bool {
+    let zero = |id: Id| pool.as_number(id) == Some(0.0);
     joints.iter().all(|joint| {
         let third = |frame: &numbers::Matrix| numbers::column(frame, 2)[2].abs();
         let is_along = |freedom| match freedom {
@@ -382,7 +394,11 @@ fn is_planar(joints: &[Joint]) -> bool {
             Freedom::Ball => false,
             Freedom::Free => true,
         };
-        joint.steps().iter().all(|step| is_along(step.freedom))
+        let [on_parent, on_child] = &joint.at;
+        let is_level = zero(on_child.0[2]) && (joint.parent.is_none() || zero(on_parent.0[2]));
+        let mobility = &bodies[joint.child].mobility;
+        let is_principal = [2, 5, 6, 7].into_iter().all(|entry| zero(mobility.0[entry]));
+        is_level && is_principal && joint.steps().iter().all(|step| is_along(step.freedom))
     })
 }
 

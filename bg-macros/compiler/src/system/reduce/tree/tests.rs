@@ -129,8 +129,9 @@ fn joined(kinds: &[String], clauses: &str) -> String {
 
 #[test]
 fn a_pendulum_about_any_axis_has_an_angle_and_a_speed() {
-    for axis in ["x", "y"] {
-        let scene = scene(&format!("{} {}", chain(&[axis], ""), observed(1, "")), "tune {}");
+    for (axis, gravity) in [("x", "[0, 0, -9.81]"), ("y", "[0, 0, -9.81]"), ("z", "[0, -9.81, 0]")] {
+        let pendulum = chain(&[axis], "").replacen("[0, 0, -9.81]", gravity, 1);
+        let scene = scene(&format!("{pendulum} {}", observed(1, "")), "tune {}");
         assert_eq!(scene.left(), ["j0.q", "j0.u"], "{}", scene.report);
         agrees(&scene);
     }
@@ -144,6 +145,45 @@ fn hinges_one_after_the_other_move_as_their_bodies_do() {
         agrees(&scene);
         assert_eq!(operations(&scene), expected, "{axes:?}");
     }
+}
+
+/// Links of a plane that lie beside each other, whose joints hold them against moments across it.
+const BESIDE: &str = "gravity [0, -9.81, 0]; ground { point O = [0, 0, 0]; point C = [0.4, 0, 0]; }
+    body b0 { mass 1; inertia [1e-3, 1e-3, 2e-3]; point foot = [0, -0.05, 0]; point head = [0, 0.05, 0.02]; start foot at [0, 0, 0]; }
+    body b1 { mass 2; inertia [1e-3, 2e-2, 2e-2]; point left = [-0.2, 0, 0]; point right = [0.2, 0, 0.01]; start left at [0, 0.1, 0.02]; }
+    joint o: revolute z (ground.O -> b0.foot) { rigid; } joint a: revolute z (b0.head -> b1.left) { rigid; }";
+
+#[test]
+fn links_beside_each_other_turn_by_angles() {
+    for (others, outputs) in
+        [("", ""), ("drive f on b1.right force = [1, 2, 3];", "f: N = a.force; m: N*m = o.moment;")]
+    {
+        let scene = scene(&format!("{BESIDE} {others} {}", observed(2, outputs)), "tune {}");
+        assert_eq!(scene.left(), ["o.q", "o.u", "a.q", "a.u"], "{}", scene.report);
+        assert_eq!(operations(&scene), if others.is_empty() { 33 } else { 45 }, "{others}");
+        agrees(&scene);
+    }
+}
+
+#[test]
+fn a_flat_tree_that_is_pushed_across_turns_by_angles() {
+    let flat = BESIDE.replace("0.02];", "0];").replace("0.01];", "0];").replace("0.1, 0.02]", "0.1, 0]");
+    let of = |others: &str| scene(&format!("{flat} {others} {}", observed(2, "")), "tune {}");
+    assert!(of("").left().iter().all(|state| !state.ends_with(".u")), "bodies' own momenta take less");
+    let scene = of("drive f on b1.right force = [0, 0, 3];");
+    assert_eq!(scene.left(), ["o.q", "o.u", "a.q", "a.u"], "{}", scene.report);
+    agrees(&scene);
+}
+
+#[test]
+fn a_loop_of_links_beside_each_other_is_one_of_the_plane() {
+    let rocker =
+        "body b2 { mass 1; inertia [1e-2, 1e-3, 1e-2]; point foot = [0, -0.05, 0]; point head = [0, 0.05, 0.03];
+            start foot at [0.4, 0, 0]; }
+        joint b: revolute z (b1.right -> b2.head) { rigid; } joint c: revolute z (ground.C -> b2.foot) { rigid; }";
+    let scene = scene(&format!("{BESIDE} {rocker} {}", observed(3, "")), "tune {}");
+    assert_eq!(scene.left().len(), 6, "{}", scene.report);
+    assert_eq!(operations(&scene), 293);
 }
 
 /// Two bodies on one, one of them on a hinge whose axis is along no coordinate axis.
@@ -320,7 +360,7 @@ fn put(statements: &str) -> Scene {
     let derived = crate::pipeline::derive(&variant.graph).expect("equations").equations;
     let (mut literal, mut reduced) = (derived.clone(), derived);
     let mut report = crate::system::reduce::Report::new(&reduced);
-    super::put(&mut reduced, &mut report).unwrap_or_else(|| panic!("no tree: {statements}"));
+    super::put(&mut reduced, &mut report, super::Which::NotFlat).unwrap_or_else(|| panic!("no tree: {statements}"));
     for equations in [&mut literal, &mut reduced] {
         solve_reactions(equations);
         equations.close();
