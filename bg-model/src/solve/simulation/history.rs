@@ -26,8 +26,6 @@ const ROUNDING: f64 = 16.0;
 const HALVINGS: u32 = 6;
 /// The order of the derivative whose jump no method's error shows.
 const SMOOTH: u8 = 9;
-/// The degree of the polynomials, which is that of the states of a delay.
-const DEGREE: usize = 12;
 const LOOKS: usize = 6;
 /// Where polynomials are held against the signal: places in them.
 const LOOKED_AT: [f64; LOOKS] = [-0.98, -0.71, -0.23, 0.31, 0.64, 0.97];
@@ -37,6 +35,8 @@ const LOOKED_AT: [f64; LOOKS] = [-0.98, -0.71, -0.23, 0.31, 0.64, 0.97];
 pub(crate) struct History {
     delays: Vec<Delay>,
     pasts: Vec<Past>,
+    /// Places in a polynomial at which it is what its signal is: as many as a delayed signal has coefficients.
+    nodes: Vec<f64>,
     relative: f64,
     /// Until when the delayed signals are known, s; none before the start.
     until: Option<f64>,
@@ -88,8 +88,11 @@ impl History {
             let time = delay.time;
             delay.states.signals.iter().map(move |signal| past(time, signal))
         };
-        let pasts = delays.iter().flat_map(of_delay).collect();
-        (!delays.is_empty()).then_some(Self { delays, pasts, relative, until: None, jump: Some(0), jump_at_end: None })
+        let pasts: Vec<Past> = delays.iter().flat_map(of_delay).collect();
+        let count = pasts.first()?.coefficients.len();
+        debug_assert!(pasts.iter().all(|past| past.coefficients.len() == count), "the compiler has one degree for all");
+        let nodes = nodes(count);
+        Some(Self { delays, pasts, nodes, relative, until: None, jump: Some(0), jump_at_end: None })
     }
 
     /// The past of a run that starts at `t` (s) in state `x`, which has what the signals were before; one that goes on
@@ -122,7 +125,7 @@ impl History {
 
     /// Keeps the signals during the step that has been made; states inside of it are projected so often at most.
     pub fn record(&mut self, stepper: &mut Stepper<'_>, projections: usize) {
-        let Self { delays, pasts, relative, .. } = self;
+        let Self { delays, pasts, nodes, relative, .. } = self;
         let places = pasts.iter().map(|past| past.coefficients[0]).collect();
         let mut reader = Reader { state: vec![0.0; stepper.start.x.len()], stepper, delays, places, projections };
         let exact = reader.values(1.0);
@@ -135,10 +138,10 @@ impl History {
         // Parts of the step from the first on: their ends, and how often they can be halved.
         let mut parts = vec![([0.0, 1.0], HALVINGS)];
         while let Some((ends, halvings)) = parts.pop() {
-            let values: Vec<Vec<f64>> = reader.at(ends, nodes());
-            let looked_at = reader.at(ends, LOOKED_AT);
-            let found: Vec<Vec<f64>> =
-                (0..pasts.len()).map(|k| polynomial(core::array::from_fn(|node| values[node][k]))).collect();
+            let values: Vec<Vec<f64>> = reader.at(ends, nodes);
+            let looked_at = reader.at(ends, &LOOKED_AT);
+            let of_signal = |k: usize| values.iter().map(|values| values[k]).collect::<Vec<f64>>();
+            let found: Vec<Vec<f64>> = (0..pasts.len()).map(|k| polynomial(&of_signal(k))).collect();
             let is_close = pasts.iter().zip(&found).enumerate().all(|(k, (past, of))| {
                 let error = LOOKED_AT.iter().zip(&looked_at).map(|(&at, values)| (evaluated(of, at) - values[k]).abs());
                 largest(error) <= past.allowed(OF_STEP * *relative)
@@ -166,7 +169,7 @@ impl History {
         }
         let relative = OF_WINDOW * self.relative;
         let polynomials = loop {
-            let found: Vec<_> = self.pasts.iter().map(|past| past.over(t - past.time, window)).collect();
+            let found: Vec<_> = self.pasts.iter().map(|past| past.over(t - past.time, window, &self.nodes)).collect();
             let shorter = |(past, of): (&Past, &Vec<f64>)| past.shorter(t - past.time, window, of, relative);
             match self.pasts.iter().zip(&found).find_map(shorter) {
                 Some(shorter) => window = shorter,
@@ -234,10 +237,10 @@ impl Past {
         evaluated(&piece.coefficients, 2.0 * part - 1.0)
     }
 
-    /// The polynomial over `window` (s) from `from` (s) on.
-    fn over(&self, from: f64, window: f64) -> Vec<f64> {
+    /// The polynomial through `nodes` over `window` (s) from `from` (s) on.
+    fn over(&self, from: f64, window: f64, nodes: &[f64]) -> Vec<f64> {
         let inside = self.inside(from, window);
-        polynomial(nodes().map(|node| self.value(inside(node))))
+        polynomial(&nodes.iter().map(|&node| self.value(inside(node))).collect::<Vec<f64>>())
     }
 
     /// Times in a window that rounding leaves in it.
@@ -280,13 +283,13 @@ impl Reader<'_, '_> {
     }
 
     /// The signals at places between two parts of the step.
-    fn at<const K: usize>(&mut self, [from, until]: [f64; 2], places: [f64; K]) -> Vec<Vec<f64>> {
+    fn at(&mut self, [from, until]: [f64; 2], places: &[f64]) -> Vec<Vec<f64>> {
         let part = |place: f64| match place {
             -1.0 => from,
             1.0 => until,
             _ => from + 0.5 * (until - from) * (1.0 + place),
         };
-        places.map(|place| self.values(part(place))).into()
+        places.iter().map(|&place| self.values(part(place))).collect()
     }
 
     /// The signals at this part of the step.
@@ -325,23 +328,24 @@ fn evaluated(coefficients: &[f64], at: f64) -> f64 {
 /// The polynomial through values at [`nodes`], from the coefficient of power 0 on: that in Chebyshev's polynomials by a
 /// cosine transform, whose terms fall off, then in powers. Source: Trefethen, Approximation Theory and Approximation
 /// Practice, chapter 3.
-fn polynomial(values: [f64; DEGREE + 1]) -> Vec<f64> {
-    let n = DEGREE as f64;
-    let half = |k: usize| if k == 0 || k == DEGREE { 0.5 } else { 1.0 };
+fn polynomial(values: &[f64]) -> Vec<f64> {
+    let degree = values.len() - 1;
+    let n = degree as f64;
+    let half = |k: usize| if k == 0 || k == degree { 0.5 } else { 1.0 };
     let of_chebyshev = |k: usize| {
         let term = |(j, value): (usize, &f64)| half(j) * value * libm::cos(PI * (j * k) as f64 / n);
         half(k) * 2.0 / n * values.iter().enumerate().map(term).sum::<f64>()
     };
-    let mut powers = vec![0.0; DEGREE + 1];
+    let mut powers = vec![0.0; values.len()];
     let mut add = |factor: f64, of: &[f64]| powers.iter_mut().zip(of).for_each(|(sum, value)| *sum += factor * value);
     // T of the last two degrees, in powers.
-    let (mut before, mut now) = ([0.0; DEGREE + 1], [0.0; DEGREE + 1]);
+    let (mut before, mut now) = (vec![0.0; values.len()], vec![0.0; values.len()]);
     (before[0], now[1]) = (1.0, 1.0);
     add(of_chebyshev(0), &before);
-    for k in 1..=DEGREE {
+    for k in 1..=degree {
         add(of_chebyshev(k), &now);
-        let mut next = before.map(|value| -value);
-        for power in 1..=DEGREE {
+        let mut next: Vec<f64> = before.iter().map(|value| -value).collect();
+        for power in 1..=degree {
             next[power] += 2.0 * now[power - 1];
         }
         (before, now) = (now, next);
@@ -349,11 +353,14 @@ fn polynomial(values: [f64; DEGREE + 1]) -> Vec<f64> {
     powers
 }
 
-/// The places at which a polynomial is known, from 1 to -1: the extrema of Chebyshev's polynomial.
-fn nodes() -> [f64; DEGREE + 1] {
-    core::array::from_fn(|j| match j {
+/// The places at which a polynomial of so many coefficients is known, from 1 to -1: the extrema of Chebyshev's
+/// polynomial.
+fn nodes(count: usize) -> Vec<f64> {
+    let degree = count - 1;
+    let place = |j: usize| match j {
         0 => 1.0,
-        DEGREE => -1.0,
-        _ => libm::cos(PI * j as f64 / DEGREE as f64),
-    })
+        _ if j == degree => -1.0,
+        _ => libm::cos(PI * j as f64 / degree as f64),
+    };
+    (0..count).map(place).collect()
 }

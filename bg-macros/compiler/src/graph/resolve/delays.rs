@@ -15,7 +15,7 @@ use crate::graph::{Clock, Delay, DelayedSignal, GraphFault, Integral, Let};
 use crate::source::ast::{BinaryOperator, Expression, ExpressionKind, Name, Unit};
 use crate::source::clause::Allowed;
 
-/// The degree of the polynomials.
+/// The degree of the polynomials, which the run time takes from the numbers of their coefficients.
 const DEGREE: usize = 12;
 
 impl Resolver {
