@@ -52,7 +52,7 @@ fn main() {
         measure::<Pendulum>("nonlinear.rs", &|_| true, &mut rows);
     }
     let scene = |name: &str| SCENES.contains(&&*name.to_lowercase()) && is_wanted(&name.to_lowercase());
-    measure::<Hacksaw>("mechanism.rs", &scene, &mut rows);
+    measure::<Hacksaw>("hacksaw.bond", &scene, &mut rows);
     print!("{}", table(&rows));
 }
 

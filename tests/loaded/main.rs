@@ -270,12 +270,12 @@ each_example!(examples);
 
 #[test]
 fn hacksaw() {
-    all_models::<hacksaw::mechanism::Hacksaw>("mechanism.rs");
+    all_models::<hacksaw::mechanism::Hacksaw>("hacksaw.bond");
 }
 
 #[test]
 fn of_a_graph_whose_scene_is_wanted_alone_parameters_and_names_are_known() {
-    let text = texts::of("mechanism.rs", "Hacksaw");
+    let text = texts::of("hacksaw.bond", "Hacksaw");
     let loaded = |wanted: &str| {
         let graphs = load_wanted(&text, Wanted { scene: &|name| name == wanted, counted: Counted::Made, most: None });
         graphs.unwrap_or_else(|faults| panic!("{}", faults[0])).remove(0)

@@ -23,7 +23,7 @@ from errors_by_method import REFERENCE, error, run
 METHODS = ["auto", "dop853", "cfmr7", "nystrom", "taylor"]
 TOLERANCES = [10.0**-decade for decade in range(3, 13)]
 ORDER, JACOBIAN = 1.6, 30.0
-HACKSAW = Path("hacksaw/src/mechanism.rs")
+HACKSAW = Path("hacksaw/hacksaw.bond")
 MODELS = {
     "paper": (HACKSAW, ["--scene", "paper"], 5.0),
     "motion": (HACKSAW, ["--scene", "motion"], 5.0),

@@ -37,7 +37,7 @@ def models():
     for path in sorted(Path("bg-model/workbench/examples").glob("*.rs")):
         yield path, [], 2.0
     for scene in SCENES:
-        yield Path("hacksaw/src/mechanism.rs"), ["--scene", scene], 1.0
+        yield Path("hacksaw/hacksaw.bond"), ["--scene", scene], 1.0
     for name in TEXTS:
         yield Path(f"bg-model/bond/examples/{name}.bond"), [], 2.0
 

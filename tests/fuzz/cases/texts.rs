@@ -24,7 +24,7 @@ pub fn seeds(workspace: &Path) -> io::Result<Vec<String>> {
     for path in models {
         texts.extend(calls(&fs::read_to_string(path)?));
     }
-    texts.extend(calls(&fs::read_to_string(workspace.join("hacksaw/src/mechanism.rs"))?));
+    texts.push(fs::read_to_string(workspace.join("hacksaw/hacksaw.bond"))?);
     Ok(texts)
 }
 

@@ -105,7 +105,7 @@ pub fn all() -> Result<Vec<Offered>, String> {
         title: "A power hacksaw".to_owned(),
         about: "The five links of the paper that this project is about. Compiling it takes a moment.".to_owned(),
         scene: "motion".to_owned(),
-        text: text(&repository.join("hacksaw/src/mechanism.rs"))?,
+        text: of_file(&repository.join("hacksaw/hacksaw.bond"))?,
         ..Offered::default()
     };
     let examples = Example::all(&repository.join("bg-model/workbench/examples"))?;
@@ -150,7 +150,7 @@ fn of_example(example: &Example, text: String) -> Offered {
 /// What stands in the calls of `bond_graph!` of a Rust file.
 fn text(path: &Path) -> Result<String, String> {
     let failed = |fault: &dyn std::fmt::Display| format!("{}: {fault}", path.display());
-    let source = std::fs::read_to_string(path).map_err(|fault| failed(&fault))?;
+    let source = of_file(path)?;
     let calls = macro_calls(source.parse().map_err(|fault: LexError| failed(&fault))?);
     let inside = |call: &Group| {
         let [open, close] = [call.span_open().byte_range().end, call.span_close().byte_range().start];
@@ -158,6 +158,11 @@ fn text(path: &Path) -> Result<String, String> {
     };
     let texts: Vec<String> = calls.iter().map(inside).collect();
     if texts.is_empty() { Err(failed(&"has no bond_graph! { .. }")) } else { Ok(texts.join("\n")) }
+}
+
+/// A file as it stands.
+fn of_file(path: &Path) -> Result<String, String> {
+    std::fs::read_to_string(path).map_err(|fault| format!("{}: {fault}", path.display()))
 }
 
 /// The lines of a block as they stand outside of it.
