@@ -66,7 +66,7 @@ impl Extras for Paper {
         sources::source(name)
     }
 
-    fn page(&self, _: &'static Description) -> Page {
+    fn page(&self, _: &str, _: &'static Description) -> Page {
         Page {
             title: "Power hacksaw".to_owned(),
             introduction:

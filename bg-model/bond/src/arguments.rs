@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use bg_compiler::fault::near_miss;
 use clap::error::ErrorKind;
-use clap::{Arg, ArgMatches, ColorChoice, Command, Error, FromArgMatches, Subcommand, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, ColorChoice, Command, Error, FromArgMatches, Subcommand, value_parser};
 use clap_complete::Shell;
 
 use bg_workbench::command::colour;
@@ -131,14 +131,20 @@ const GOLDEN: [(&str, &str); 2] =
 /// A file and its options, for clap.
 const WORDS: &str = "words";
 
+/// The option for one of several graphs.
+const GRAPH: &str = "--graph";
+
 /// The option for other points of a table.
 const TABLE: &str = "--table";
+
+/// The option for no machine code.
+const INTERPRETED: &str = "--interpreted";
 
 /// The option for larger graphs.
 const LIMIT: &str = "--limit-statements";
 
-const AFTER: &str = "`bond FILE [OPTIONS]` is `bond run FILE [OPTIONS]`. `bond COMMAND FILE --help` has the options of a command, with the
-names in the file.
+const AFTER: &str = "`bond FILE [OPTIONS]` is `bond run FILE [OPTIONS]`. `bond COMMAND FILE --help` has the options of a command with the
+names in the file, and without FILE the options.
 
 FILE is a text with graphs (`.bond`), a Rust file with calls of `bond_graph!` (`.rs`), a robot (`.urdf`, or `.xml` and
 `.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which. A graph has at most 20000 statements, with
@@ -169,7 +175,12 @@ impl Own {
 /// What is missing or wrong; or the help or version that is asked for.
 pub fn asked(words: impl IntoIterator<Item = OsString>) -> Result<Asked, Error> {
     let words: Vec<OsString> = words.into_iter().collect();
-    let matches = command().color(colour::set(words.iter().cloned())).try_get_matches_from(words)?;
+    let colour = colour::set(words.iter().cloned());
+    let matches = command().color(colour).try_get_matches_from(&words);
+    // A command on a file reads its options when it has the file; the help is of all.
+    let all_of = |help: Error| whole().color(colour).try_get_matches_from(&words).err().unwrap_or(help);
+    let matches =
+        matches.map_err(|fault| if fault.kind() == ErrorKind::DisplayHelp { all_of(fault) } else { fault })?;
     let own = || Own::from_arg_matches(&matches).and_then(Own::complete).map(Asked::Own);
     match matches.subcommand() {
         Some(("golden", inside)) => match inside.subcommand() {
@@ -213,12 +224,27 @@ fn command() -> Command {
     program.about("Runs and studies mechanisms in text files, in the language of `bond_graph!`").after_help(AFTER)
 }
 
-/// The command line with all options of the workbench's commands, for manual pages and shells.
+/// The command line with all options of the workbench's commands, for manual pages, shells and the help without a file.
 pub fn whole() -> Command {
     let of_workbench = bg_workbench::command::commands();
     let file = || Arg::new("FILE").index(1).required(true).help("The file");
+    let own = || {
+        let option = |name: &'static str, value: &'static str, help: &'static str| {
+            Arg::new(name).long(name.trim_start_matches('-')).value_name(value).help(help).help_heading("Of the file")
+        };
+        [
+            option(GRAPH, "NAME", "Which graph of a file that has several"),
+            option(TABLE, "NAME=FILE.csv", "Other points for a table of the file, any number of them")
+                .action(ArgAction::Append),
+            option(LIMIT, "NUMBER", "The most statements of a graph, with its repetitions and parts [default: 20000]"),
+            option(INTERPRETED, "", "No machine code: slower, and to the bit the same").action(ArgAction::SetTrue),
+        ]
+    };
     // What the workbench's commands have without an option's name comes after the file.
-    let full = |known: &Command| {
+    let full = |known: &Command, words: &str| {
+        let names: String = known.get_positionals().map(|place| format!(" {place}")).collect();
+        let known = known.clone().override_usage(format!("bond {words} FILE{names} [OPTIONS]"));
+        let known = known.after_help(format!("`bond {words} FILE --help` has the names in the file, too."));
         let mut place = 1;
         let after = |arg: Arg| {
             if arg.is_positional() {
@@ -228,18 +254,18 @@ pub fn whole() -> Command {
                 arg
             }
         };
-        known.clone().mut_args(after).arg(file())
+        known.mut_args(after).arg(file()).args(own())
     };
     let mut program = command();
     for (name, _) in COMMANDS {
         let known = of_workbench.find_subcommand(name).expect("a command of the workbench");
-        program = program.mut_subcommand(name, |_| full(known));
+        program = program.mut_subcommand(name, |_| full(known, name));
     }
     let golden = of_workbench.find_subcommand("golden").expect("a command of the workbench");
     program.mut_subcommand("golden", |own| {
         GOLDEN.iter().fold(own, |own, (name, _)| {
             let known = golden.find_subcommand(name).expect("a command of the workbench");
-            own.mut_subcommand(name, |_| full(known))
+            own.mut_subcommand(name, |_| full(known, &format!("golden {name}")))
         })
     })
 }
@@ -269,7 +295,7 @@ fn unusable(fault: String) -> Error {
 fn call(command: &[&str], mut words: impl Iterator<Item = OsString>) -> Result<Asked, Error> {
     let file = words.next().expect("a file is required").into();
     let mut options: Vec<OsString> = words.collect();
-    let graph = taken(&mut options, "--graph")?;
+    let graph = taken(&mut options, GRAPH)?;
     let most = match taken(&mut options, LIMIT)? {
         Some(most) => Some(most.parse().map_err(|_| unusable(format!("{LIMIT} {most}: not a number of statements")))?),
         None => None,
@@ -285,7 +311,7 @@ fn call(command: &[&str], mut words: impl Iterator<Item = OsString>) -> Result<A
     // As they stand on the command line.
     tables.reverse();
     let all = options.len();
-    options.retain(|word| word != "--interpreted");
+    options.retain(|word| word != INTERPRETED);
     let command = command.iter().map(|&word| word.to_owned()).collect();
     Ok(Asked::Program(Call { file, graph, is_interpreted: options.len() < all, most, tables, command, options }))
 }
@@ -379,6 +405,22 @@ mod tests {
         };
         assert_eq!(call.tables, [("a".to_owned(), "b.csv".into()), ("c".to_owned(), "d.csv".into())]);
         assert_eq!(call.options, ["--t-end", "2"]);
+    }
+
+    #[test]
+    fn help_without_a_file_has_all_options() {
+        let commands = COMMANDS.map(|(name, _)| name).into_iter().chain(["golden record", "golden check"]);
+        for command in commands {
+            let help = of(&format!("{command} --help")).expect_err(command);
+            for part in [&format!("Usage: bond {command} FILE"), "--graph <NAME>", "--table <NAME=FILE.csv>", "--json"]
+            {
+                assert!(help.contains(part), "{command} has no {part}: {help}");
+            }
+        }
+        let help = of("run -h").expect_err("help");
+        assert!(
+            ["--t-end", "--set", "--method", "--output", "--interpreted"].iter().all(|option| help.contains(option))
+        );
     }
 
     #[test]

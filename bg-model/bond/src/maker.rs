@@ -77,6 +77,10 @@ impl Maker for Loaded {
         self.graph.models.iter().map(|model| model.description).collect()
     }
 
+    fn name(&self) -> &str {
+        &self.graph.name
+    }
+
     fn is_literal(&self) -> bool {
         self.graph.is_literal
     }

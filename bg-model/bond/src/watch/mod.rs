@@ -20,6 +20,7 @@ use bond_graph::file;
 use changes::Changes;
 use report::{Ended, Making};
 use server::Shared;
+use tempfile::TempDir;
 
 use crate::served::Served;
 
@@ -47,11 +48,14 @@ pub fn watch(path: &Path, options: &[OsString], served: &Served) -> ExitCode {
 fn follow(path: &Path, options: &[OsString], shared: &Shared) -> ! {
     let mut changes = Changes::of(of_options(options));
     let mut making: Option<Making> = None;
+    // The graph stays the same where a number changes.
+    let kept = TempDir::new().ok();
+    let picture = kept.as_ref().map(|folder| folder.path().join("picture"));
     loop {
         if changes.are_there(|| file::files(path)) {
             // What runs is ended where it is dropped.
             drop(making.take());
-            match Making::begin(path, options) {
+            match Making::begin(path, options, picture.as_deref()) {
                 Ok(begun) => {
                     shared.begin();
                     making = Some(begun);

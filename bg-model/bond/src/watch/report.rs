@@ -1,6 +1,6 @@
 //! A report, made by a process of its own.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::fs::File;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -27,16 +27,18 @@ const SAID: &str = "said";
 const OUT: &str = "out";
 
 impl Making {
-    /// Begins the report of a file with these options.
+    /// Begins the report of a file with these options, which keeps the picture of the graph in
+    /// `picture`.
     ///
     /// # Errors
     /// No process can be started, or no file be written: a sentence.
-    pub fn begin(file: &Path, options: &[OsString]) -> Result<Self, String> {
+    pub fn begin(file: &Path, options: &[OsString], picture: Option<&Path>) -> Result<Self, String> {
         let begun = || {
             let folder = TempDir::new()?;
             let said = File::create(folder.path().join(SAID))?;
             let mut command = Command::new(std::env::current_exe()?);
             command.arg("report").arg(file).args(options).arg("--out").arg(folder.path().join(OUT));
+            command.args(picture.iter().flat_map(|picture| [OsStr::new("--picture"), picture.as_os_str()]));
             let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(said).spawn()?;
             Ok(Self { child, folder })
         };

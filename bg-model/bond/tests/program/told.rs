@@ -86,7 +86,7 @@ fn a_page_has_a_measurement_and_pictures_beside_the_run() {
     let options = [&["report", "swing.bond", "--t-end", "1", "--with", "measured.csv"][..], &pictures].concat();
     let output = command.current_dir(folder.path()).args(options).output().expect("the program starts");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let page = std::fs::read_to_string(folder.path().join("out/bond.html")).expect("a page");
+    let page = std::fs::read_to_string(folder.path().join("out/swing.html")).expect("a page");
     assert_eq!(page.matches("<img data-drawing=").count(), 3);
     assert!(page.contains("alt=\"spectrum of x, 0.1..\""), "every picture has its name");
     let others =

@@ -16,6 +16,11 @@ pub trait Maker: Send + Sync {
     /// that a program knows, and has values for. The scenes follow in the order of the text.
     fn models(&self) -> Vec<&'static Description>;
 
+    /// The name of the graph, as the text has it.
+    fn name(&self) -> &str {
+        self.models()[0].name
+    }
+
     /// Whether the first model is the graph as it stands, not a scene of it.
     fn is_literal(&self) -> bool;
 

@@ -353,6 +353,10 @@ pub struct ReportArguments {
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, value_parser = real, allow_negative_numbers = true)]
     pub modes: Option<Option<f64>>,
 
+    /// Keep the picture of the graph in this file, and take it from there while the graph is the same
+    #[arg(long, value_name = "FILE", hide = true)]
+    pub picture: Option<PathBuf>,
+
     /// Show an SVG file in the report, such as a diagram of `precision` or `linearize`; can be given again and again
     #[arg(long, value_name = "FILE.svg")]
     pub show: Vec<PathBuf>,

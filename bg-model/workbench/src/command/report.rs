@@ -22,6 +22,8 @@ pub struct Look {
     pub drawings: Vec<(String, String)>,
     /// Where to linearise, if at all: at a time, s, or at the equilibrium.
     pub modes: Option<Option<f64>>,
+    /// Where the picture of the graph is kept, for another report of it.
+    pub picture: Option<PathBuf>,
     /// How the run is integrated.
     pub integration: IntegrationArguments,
     /// Where the program is from that runs in the page, where one is wanted.
@@ -29,15 +31,16 @@ pub struct Look {
 }
 
 pub fn report(program: &Program, arguments: &ReportArguments) -> Result<ExitCode, InputError> {
-    let ReportArguments { run, glb, modes, show, live } = arguments;
-    let name = &program.texts.name;
+    let ReportArguments { run, glb, modes, show, live, picture } = arguments;
+    let name = program.texts.stem();
     let glb = glb.then(|| format!("{name}.glb"));
     let files = PageFiles { page: format!("{name}.html"), figures: false, glb };
     let drawings = show.iter().map(|path| drawing(path)).collect::<Result<_, _>>()?;
     check_time("--modes", modes.flatten())?;
     let integration = run.integration.clone();
     let module = live.as_ref().map(|file| Module::from(file.clone()));
-    simulate(program, run, Some(&Look { files, drawings, modes: *modes, integration, module }))
+    let look = Look { files, drawings, modes: *modes, picture: picture.clone(), integration, module };
+    simulate(program, run, Some(&look))
 }
 
 /// A drawing with its file's name as title.

@@ -25,6 +25,7 @@ use crate::run::summary::Summary;
 use crate::show::output::{Claimed, OutputError, Places};
 use crate::show::page::film::Film;
 use crate::show::page::{Parameter, Views};
+use crate::show::picture;
 use crate::show::shown::{Exhibits, PageFiles};
 use crate::show::signals::Drawing;
 
@@ -183,7 +184,13 @@ pub(super) fn claimed_and_run<C>(
     let claimed = claim()?;
     let mut outcome = follow(machine, request, from.as_ref())?;
     let description = machine.description();
-    let views = look.map_or_else(Views::default, |_| Film::taken(description, &mut outcome.run).views(modes));
+    let views = look.map_or_else(Views::default, |look| {
+        let svg = look
+            .picture
+            .as_deref()
+            .map_or_else(|| picture::svg(description), |file| picture::svg_kept(description, file));
+        Film::taken(description, &mut outcome.run).views(modes, svg)
+    });
     Ok((outcome, views, claimed))
 }
 
@@ -233,7 +240,7 @@ fn report(
     if let Some(names) = extras.columns(&run) {
         keep(&mut rows, names.iter().map(String::as_str));
     }
-    let texts = extras.page(exhibits.description);
+    let texts = program.page(exhibits.description);
     let mut written = claimed.write(&rows, &run, &texts, exhibits, &mut summary);
     let text = if spoken.as_json {
         summary.json()

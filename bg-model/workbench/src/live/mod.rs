@@ -27,9 +27,9 @@ use crate::ask::scenes::Scene;
 use crate::program::Program;
 use crate::run::running::{BeginError, Outcome, follow};
 use crate::run::summary::{Check, Summary};
-use crate::show::extras::Extras;
 use crate::show::page::film::Film;
 use crate::show::page::{Balance, Bonds, Data, Parameter, Report, page_beside};
+use crate::show::picture;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use module::{Module, ModuleError};
@@ -124,8 +124,7 @@ fn told(outcome: Result<Shown, Refusal>) -> String {
 
 /// A run that was asked for.
 struct Made<'a> {
-    program: String,
-    extras: &'a dyn Extras,
+    program: &'a Program,
     scene: &'a Scene,
     outcome: Outcome,
     /// What can be seen of it.
@@ -154,8 +153,7 @@ fn made<'a>(program: &'a Program, order: &Order) -> Result<Made<'a>, Refusal> {
     let from = order.begin.state(&*machine)?;
     let mut outcome = follow(&*machine, request, from.as_ref(), |_| ())?;
     Ok(Made {
-        program: program.texts.name_and_version(),
-        extras: &*program.extras,
+        program,
         scene,
         film: Film::taken(scene.description, &mut outcome.run),
         outcome,
@@ -169,10 +167,10 @@ impl Made<'_> {
     /// The run in numbers.
     fn summary(&self) -> Result<Summary, MissingColumn> {
         let Outcome { run, failure } = &self.outcome;
-        let mut summary = Summary::new(&self.scene.name, run, failure.clone(), self.extras.additions(run)?);
+        let mut summary = Summary::new(&self.scene.name, run, failure.clone(), self.program.extras.additions(run)?);
         // WebAssembly has no clock, and the same run gives the same bytes.
         summary.wall_time_s = 0.0;
-        summary.program.clone_from(&self.program);
+        summary.program = self.program.texts.name_and_version();
         summary.changed_parameters = changed(self.values.all());
         summary.inputs.clone_from(&self.inputs);
         Ok(summary)
@@ -199,20 +197,20 @@ impl Made<'_> {
 
     /// It as a page in a frame of another page.
     fn page(&self, order: &Order) -> Result<String, MissingColumn> {
-        let Self { extras, scene, outcome: Outcome { run, .. }, film, rows, values, .. } = self;
+        let Self { program, scene, outcome: Outcome { run, .. }, film, rows, values, .. } = self;
         let rows = run.at(rows).times;
         let report = Report {
-            texts: &extras.page(scene.description),
+            texts: &program.page(scene.description),
             description: scene.description,
             scene: &scene.summary(),
-            parameters: &Parameter::all(values, |name| extras.source(name)),
+            parameters: &Parameter::all(values, |name| program.extras.source(name)),
             summary: &self.summary()?,
             run,
             rows: &rows,
             figures: &[],
             others: &[],
             drawings: &[],
-            views: &film.views(None),
+            views: &film.views(None, picture::svg(scene.description)),
             live: None,
         };
         Ok(page_beside(&report, order))

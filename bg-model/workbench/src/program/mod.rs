@@ -2,6 +2,9 @@
 
 pub mod case;
 
+use std::path::Path;
+
+use bg_model::description::Description;
 use bg_model::mechanism::Scenes;
 
 use crate::ask::compiled::Compiled;
@@ -10,13 +13,19 @@ use crate::ask::maker::Maker;
 use crate::ask::scenes::Scene;
 use crate::ask::scenes::{Models, in_small_letters};
 use crate::ask::table_file::TableFile;
-use crate::show::extras::{Extras, Plain};
+use crate::show::extras::{Extras, Page, Plain};
 use case::{Case, CaseSolution};
 
 impl Texts {
     /// The name with the version.
     pub fn name_and_version(&self) -> String {
         format!("{} {}", self.name, self.version)
+    }
+
+    /// What a report is called: as the file with the models, else as the program.
+    pub fn stem(&self) -> &str {
+        let of_file = self.file.as_deref().and_then(|file| Path::new(file).file_stem()?.to_str());
+        of_file.unwrap_or(&self.name)
     }
 }
 
@@ -87,6 +96,13 @@ impl Program {
         self.cases = cases;
         self.measured = measured.iter().map(|&name| name.to_owned()).collect();
         self
+    }
+
+    /// The texts of the page of a run of this model: the title has its name, too, unless that is the graph's.
+    pub(crate) fn page(&self, model: &'static Description) -> Page {
+        let graph = self.models.maker().name();
+        let page = self.extras.page(graph, model);
+        if model.name == graph { page } else { Page { title: format!("{}: {}", page.title, model.name), ..page } }
     }
 
     /// Its models.

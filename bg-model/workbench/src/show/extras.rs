@@ -38,10 +38,10 @@ pub trait Extras {
         ""
     }
 
-    /// The texts of the page.
-    fn page(&self, model: &'static Description) -> Page {
+    /// The texts of the page of this model of a graph with this name.
+    fn page(&self, graph: &str, model: &'static Description) -> Page {
         Page {
-            title: model.name.to_owned(),
+            title: graph.to_owned(),
             introduction: model.doc.split_whitespace().collect::<Vec<_>>().join(" "),
             gallery: "Outputs".to_owned(),
             about_gallery: String::new(),
@@ -70,7 +70,7 @@ impl Extras for Plain {}
 /// The texts of the page.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Page {
-    /// Its title.
+    /// Its title, of the mechanism; the page adds the name of the scene.
     pub title: String,
     /// What stands below it.
     pub introduction: String,

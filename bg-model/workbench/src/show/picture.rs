@@ -3,9 +3,14 @@
 //! In: a description. Out: the tables that `bg-picture` draws, with the same indices of elements and bonds.
 
 use std::collections::BTreeMap;
+#[cfg(not(target_arch = "wasm32"))]
+use std::path::Path;
 
 use bg_model::description::{BondEnd, Description};
 use bg_picture::{Bond, End, Graph, Node, Part};
+
+#[cfg(not(target_arch = "wasm32"))]
+use crate::files::whole;
 
 /// How much of a graph is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,6 +37,26 @@ impl From<Level> for bg_picture::Level {
 pub fn svg(description: &Description) -> String {
     bg_picture::svg(&graph(description), bg_picture::Level::Full)
 }
+
+/// The same, taken from a file where that has the picture of this very graph, else drawn and kept there: drawing takes
+/// longer than a run. A file that cannot be used is as none.
+#[cfg(not(target_arch = "wasm32"))]
+#[must_use]
+pub fn svg_kept(description: &Description, file: &Path) -> String {
+    let graph = graph(description).to_string();
+    let kept = std::fs::read_to_string(file).unwrap_or_default();
+    if let Some((_, svg)) = kept.split_once(END).filter(|(of, _)| *of == graph) {
+        return svg.to_owned();
+    }
+    let svg = svg(description);
+    // Next time it is drawn again.
+    let _ = whole::write(file, |file| write!(file, "{graph}{END}{svg}"));
+    svg
+}
+
+/// What stands between a graph's text and its picture in a file: neither has it.
+#[cfg(not(target_arch = "wasm32"))]
+const END: char = '\0';
 
 /// The graph of a description.
 #[must_use]
@@ -68,5 +93,26 @@ pub fn graph(description: &Description) -> Graph {
         parts: parts.iter().map(|part| Part { word: part.word.to_owned(), name: part.name.to_owned() }).collect(),
         nodes: elements.iter().map(node).collect(),
         bonds: bonds.iter().filter_map(bond).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn described(name: &'static str) -> Description {
+        Description { name, ..Description::default() }
+    }
+
+    #[test]
+    fn a_picture_is_kept_while_the_graph_is_the_same() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("kept");
+        let drawn = svg_kept(&described("first"), &file);
+        assert_eq!(drawn, svg(&described("first")));
+        let kept = std::fs::read_to_string(&file).expect("a file");
+        std::fs::write(&file, kept.replace("<svg", "<svg id=\"kept\"")).expect("written");
+        assert!(svg_kept(&described("first"), &file).contains("id=\"kept\""));
+        assert_eq!(svg_kept(&described("second"), &file), svg(&described("second")));
     }
 }

@@ -13,7 +13,6 @@ use super::animation::{Animation, BodyTrack, JointTrack, NamedPoint, Shape, Soli
 use super::picture::{BondSeries, Picture};
 use super::{Linearised, Views};
 use crate::ask::machine::Machine;
-use crate::show::picture;
 
 /// What is shown of a run, by its columns.
 pub struct Film {
@@ -52,9 +51,9 @@ impl Film {
         Picture { svg, times: self.times.clone(), bonds: self.bonds() }
     }
 
-    /// All that a report shows beside the run, with these modes.
-    pub fn views(&self, modes: Option<Result<Linearised, String>>) -> Views {
-        let picture = Some(self.picture(picture::svg(self.description)));
+    /// All that a report shows beside the run, with these modes and this picture of the graph, an SVG text.
+    pub fn views(&self, modes: Option<Result<Linearised, String>>, svg: String) -> Views {
+        let picture = Some(self.picture(svg));
         Views { animation: self.animation(), picture, modes }
     }
 
