@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use bg_compiler::source::functions::{FUNCTIONS, Function};
 use markdown::{anchors, codes, first_cells, labels, links};
 
 /// Lines that a decision may have.
@@ -188,6 +189,36 @@ fn labels_of_the_language_lead_to_headings_in_rustdoc() {
         assert!(source.contains(&format!("include_str!(\"../docs/language/{name}\")")), "{name} is not in rustdoc");
         assert!(tested.contains(&format!("docs/language/{name}\")")), "the examples of {name} are not tested");
     }
+}
+
+/// The table of the reference is what an editor shows of each function. `RENEW=1` writes it.
+#[test]
+fn functions_of_the_reference_are_those_of_the_language() {
+    let path = root().join("bg-macros/docs/language/expressions.md");
+    let text = read(&path);
+    let head = "| function | gives | units | for example |\n|---|---|---|---|\n";
+    let (before, after) = text.split_once(head).expect("the table");
+    let (_, after) = after.split_once("\n\n").expect("its end");
+    let rows: String = FUNCTIONS.iter().map(row).collect();
+    let expected = format!("{before}{head}{OF_TABLES}{rows}\n{after}");
+    if std::env::var_os("RENEW").is_some() {
+        fs::write(&path, &expected).expect("written");
+    }
+    assert!(read(&path) == expected, "RENEW=1 writes the table of functions anew");
+}
+
+/// What calls a table.
+const OF_TABLES: &str = "\
+| `NAME(a)`, `NAME(a, b)` of a [table][tables] | Its value there. | as declared | `torque: N*m = curve(pin.speed);` |
+| `NAME.derivative(a)`, `NAME.second_derivative(a)` | Those of a table by its argument. | value per argument, and again | \
+`slope: N*m*s/rad = curve.derivative(pin.speed);` |
+";
+
+fn row(function: &Function) -> String {
+    let Function { meaning, more, units, example, .. } = function;
+    let calls: Vec<String> = function.calls().iter().map(|call| format!("`{call}`")).collect();
+    let more = more.map_or_else(String::new, |heading| format!(" [More](#{heading})."));
+    format!("| {} | {meaning}{more} | {units} | `{example}` |\n", calls.join(", "))
 }
 
 #[test]

@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use bg_compiler::graph::units::DOMAINS;
+use bg_compiler::source::functions::FUNCTIONS;
 
 /// Words of Rust in paths, and a number of components.
 const OTHERS: [&str; 4] = ["crate", "self", "super", "3"];
@@ -56,10 +57,9 @@ fn of_the_parser() -> Words {
         between(code, "] = &[", "];").for_each(|list| quoted(list, &mut words));
     }
     between(&text("bg-macros/compiler/src/source/words.rs"), "] =", "];").for_each(|table| quoted(table, &mut words));
-    between(&text("bg-macros/compiler/src/graph/term.rs"), "NAMES: [", "];")
-        .for_each(|table| quoted(table, &mut words));
+    words.extend(FUNCTIONS.iter().map(|function| function.name.to_owned()));
     words.extend(DOMAINS.iter().map(|domain| domain.name.to_owned()));
-    words.extend(["guess", "ground", "pub", "unwrapped"].map(str::to_owned));
+    words.extend(["ground", "pub"].map(str::to_owned));
     words.retain(|word| !OTHERS.contains(&word.as_str()));
     words
 }

@@ -37,14 +37,15 @@ bond_graph! {
             point /*end*/end = [-/*length in end*/length / 2, 0, 0];
             start /*end in start*/end at [0, 1, 0];
         }
-        joint /*pin*/pin: revolute z (ground./*pivot in pin*/pivot -> /*rod in pin*/rod./*end in pin*/end) {
-            stiffness 1e6; damping 100; tilt stiffness 1e3; tilt damping 1;
+        joint /*pin*/pin: /*revolute*/revolute z (ground./*pivot in pin*/pivot -> /*rod in pin*/rod./*end in pin*/end) {
+            /*stiffness*/stiffness 1e6; damping 100; tilt stiffness 1e3; tilt damping 1;
         }
         drive /*motor*/motor on /*pin in motor*/pin torque = /*torque in motor*/torque;
-        friction /*rub*/rub on /*pin in rub*/pin { coulomb 0.1; }
+        /*friction*/friction /*rub*/rub on /*pin in rub*/pin { coulomb 0.1; }
         part /*left*/left: /*Leg in left*/Leg { /*rate in left*/rate = 2000; }
         part /*row*/row[2]: /*Leg in row*/Leg;
         part /*pair*/pair: /*GearPair*/GearPair { /*ratio in pair*/ratio = 4; }
+        table /*curve*/curve: rad/s -> N*m = [[0, 2], [50, 1]], /*held*/held;
         1 /*hub*/hub: rotation; I /*wheel*/wheel = 2;
         /*pin in chain*/pin.spin -> /*pair in chain*/pair.first; /*pair again in chain*/pair.second -> /*hub in chain*/hub -> wheel;
 
@@ -53,6 +54,8 @@ bond_graph! {
             force: N = /*pin in observe*/pin./*force*/force.x;
             /*left in observe*/left./*way in observe*/way;
             /*pair in observe*/pair./*torque in observe*/torque;
+            left_over: N*m = /*curve in observe*/curve(/*abs*/abs(pin.speed)) * /*sin*/sin(/*t*/t / 1 s);
+            slope: N*m*s/rad = /*curve again in observe*/curve./*derivative*/derivative(/*delay*/delay(pin.speed, 20 ms));
             high: m = /*row in observe*/row[1]./*foot in observe*/foot./*tip in observe*/tip.position.y;
         }
 

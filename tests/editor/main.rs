@@ -9,12 +9,13 @@ mod colours;
 mod grammar;
 mod machine;
 
+use bg_compiler::source::functions;
 use client::Editor;
 use machine::{TEXT, at, mark_at, position};
 use serde_json::{Value, json};
 
 /// A name: its declaration, then all its uses in the order of the text.
-const NAMES: [&[&str]; 19] = [
+const NAMES: [&[&str]; 20] = [
     &["Leg", "Leg in left", "Leg in row"],
     &["rate", "rate in knee", "rate in left"],
     &["foot", "foot in knee", "foot in way", "foot in observe"],
@@ -33,11 +34,12 @@ const NAMES: [&[&str]; 19] = [
     &["row", "row in observe"],
     &["pair", "pair in chain", "pair again in chain", "pair in observe"],
     &["left", "left in observe"],
+    &["curve", "curve in observe", "curve again in observe"],
     &["Still", "Still in Rust"],
 ];
 
 /// What is shown of a name, at any of its places.
-const SHOWN: [(&str, &[&str]); 13] = [
+const SHOWN: [(&str, &[&str]); 23] = [
     ("length in end", &["length: f64", "Length of the rod.", "Unit: m.", "Default 0.6"]),
     ("rate in knee", &["rate: Parameter", "How stiff the knee is.", "param rate: N/m = 3000;"]),
     ("torque in motor", &["torque: Input", "What turns the pin.", "Unit: N*m."]),
@@ -58,11 +60,24 @@ const SHOWN: [(&str, &[&str]); 13] = [
     ("pair in observe", &["pair: GearPair", "ratio = 4;"]),
     ("GearPair", &["struct GearPair", "A rigid pair of gears, one outside of the other"]),
     ("ratio in pair", &["ratio: Parameter", "Teeth of the second gear over those of the first."]),
+    ("curve in observe", &["curve: Table", "table curve: rad/s -> N*m = [[0, 2], [50, 1]], held;"]),
+    ("derivative", &["derivative: f64", "the slope at the argument a"]),
+    ("abs", &["abs(a)", "The magnitude: a without its sign.", "Units: that of a.", "speed: rad/s = abs(pin.speed);"]),
+    ("sin", &["fn sin(&self, a: f64) -> f64", "The sine.", "Units: a in rad, or a pure number"]),
+    ("delay", &["delay(a, T)", "delay(a, T, start)", "What a was at the time T before", "delay(pin.speed, 20 ms, 0)"]),
+    (
+        "friction",
+        &["struct friction", "Dry friction that sticks, on a joint, contact or junction: `friction rub on pin"],
+    ),
+    ("stiffness", &["Force over the gap, N/m, in the directions that are not free"]),
+    ("revolute", &["A pin: free to turn about one axis"]),
+    ("held", &["Beyond its points a table keeps the value at its end."]),
+    ("t", &["t: Value", "The time. Unit: s."]),
     ("Machine", &["struct Machine", "A rod on a pin.", "# States"]),
 ];
 
 /// What is offered at the bar in place of a piece of text: all of it, or some where there is more to see.
-const OFFERED: [(&str, &str, &[&str]); 7] = [
+const OFFERED: [(&str, &str, &[&str]); 11] = [
     ("pin./*force*/force.x", "pin.|", &["force", "moment", "gap", "angle", "direction", "speed"]),
     ("pin./*force*/force.x", "pin.fo|", &["force", "moment", "gap", "angle", "direction", "speed"]),
     ("pin./*force*/force.x", "pin.force.|", &["x", "y", "z"]),
@@ -72,8 +87,31 @@ const OFFERED: [(&str, &str, &[&str]); 7] = [
     (
         "/*rod in observe*/rod.angle",
         "|",
-        &["length", "mass", "torque", "ground", "rod", "pin", "motor", "rub", "left", "row", "pair", "hub", "wheel"],
+        &[
+            "length",
+            "mass",
+            "torque",
+            "ground",
+            "rod",
+            "pin",
+            "motor",
+            "rub",
+            "left",
+            "row",
+            "pair",
+            "curve",
+            "hub",
+            "wheel",
+            "t",
+            "stored_energy",
+            "supplied_power",
+            "dissipated_power",
+        ],
     ),
+    ("/*friction*/friction /*rub*/rub on", "fr|", &["friction", "joint", "body", "table", "memory", "every", "stop"]),
+    ("/*stiffness*/stiffness 1e6;", "st|;", &["stiffness", "clearance", "restitution", "rigid", "rest"]),
+    ("/*sin*/sin(", "si|(", &["sin"]),
+    ("curve./*derivative*/derivative(", "curve.|(", &["derivative", "second_derivative"]),
 ];
 
 #[test]
@@ -153,10 +191,12 @@ fn offered(editor: &mut Editor) {
         editor.change(&text);
         let found = editor.at("completion", position(&text, caret), json!({}));
         let items = found["items"].as_array().or(found.as_array()).into_iter().flatten();
-        let labels: Vec<&str> = items.filter_map(|item| item["label"].as_str()).collect();
+        let labels: Vec<&str> = items.filter_map(|item| item["label"].as_str()?.split('(').next()).collect();
         let missing: Vec<_> = words.iter().filter(|word| !labels.contains(word)).collect();
         assert!(missing.is_empty(), "`{new}` offers {labels:?}, not {missing:?}");
-        let others = labels.iter().filter(|label| !words.contains(label)).count();
-        assert!(others == 0 || new == "rod.|)", "`{new}` offers {labels:?}");
+        // Functions are offered wherever names are.
+        let is_other = |label: &&&str| !words.contains(label) && functions::named(label).is_none();
+        let others = labels.iter().filter(is_other).count();
+        assert!(others == 0 || ["rod.|)", "fr|", "st|;"].contains(&new), "`{new}` offers {labels:?}");
     }
 }

@@ -84,3 +84,19 @@ fn a_state_that_reads_a_reaction_is_the_same_in_every_form() {
         assert!((of - to).abs() < 1e-8, "{joints:?} {literal:?}");
     }
 }
+
+/// A mass of 1 kg under the smaller of a ramp and 3 N, and under the larger of another ramp and nothing.
+#[test]
+fn the_smaller_and_the_larger_of_two_are_branches() {
+    let text = "graph Pushed {
+        1 one: translation; I m = 1; MSe f = min(2 N/s * t, 3 N); f -> one -> m;
+        1 two: translation; I n = 1; MSe g = max(2 N/s * (t - 1 s), 0); g -> two -> n;
+        observe { one: m/s = one.flow; two: m/s = two.flow; least: 1 = min(min(3, t / 1 s), 2.5); most: 1 = max(t / 1 s, 2.5) }
+    }";
+    for (t, least, most) in [(0.9_f64, 0.9, 2.5), (1.4, 1.4, 2.5), (2.0, 2.0, 2.5), (2.7, 2.5, 2.7)] {
+        let found = after(text, "Pushed", t);
+        let (one, two) = (if t < 1.5 { t * t } else { 2.25 + 3.0 * (t - 1.5) }, (t - 1.0).max(0.0).powi(2));
+        let expected = [one, two, least, most];
+        assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-10), "{t}: {found:?}");
+    }
+}

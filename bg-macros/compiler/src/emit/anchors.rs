@@ -7,7 +7,7 @@
 //!
 //! Only what means something is mentioned, so that rust-analyzer finds no faults of its own.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
@@ -17,8 +17,10 @@ use super::members::{self, Member, Shape};
 use super::scopes::{Declared, Kind, Path, Scope, path};
 use crate::fault::Fault;
 use crate::pipeline::Compiled;
-use crate::source::ast::{Graph, Item, Source};
+use crate::source::ast::{Graph, Item, Source, Spoken};
+use crate::source::functions::{self, FUNCTIONS};
 use crate::source::names::{INPUTS, PARAMETERS};
+use crate::source::vocabulary::{first_words, meaning};
 
 /// What rust-analyzer writes at the caret when it asks what could stand there.
 const CARET: &str = "raCompletionMarker";
@@ -65,7 +67,7 @@ impl Scopes {
             #[allow(unexpected_cfgs)]
             mod #module {
                 #[cfg(rust_analyzer)]
-                #[allow(dead_code, non_snake_case, non_camel_case_types)]
+                #[allow(dead_code, unused_variables, non_snake_case, non_camel_case_types)]
                 mod names { #names }
             }
         }
@@ -78,10 +80,18 @@ impl Scopes {
         let graphs = self.graphs.iter().zip(&source.graphs);
         let graphs: TokenStream = graphs.map(|(scope, graph)| meaning.scope(scope, standing(graph, models))).collect();
         let kinds = kinds(self.parts.iter().chain(&self.graphs));
+        let (functions, has) = (functions(), quote!(impl Functions for));
+        let words = words(source);
+        let named = |scope: &Scope| identifier(&scope.name.text);
+        let (of_parts, of_graphs) = (self.parts.iter().map(named), self.graphs.iter().map(named));
         quote! {
             mod kinds { #kinds }
             mod parts { #parts }
             mod graphs { #graphs }
+            #functions
+            #words
+            #(#has parts::#of_parts {})*
+            #(#has graphs::#of_graphs {})*
         }
     }
 
@@ -97,7 +107,15 @@ impl Scopes {
             functions.collect()
         };
         let (parts, graphs) = (each(&self.parts, &quote!(parts)), each(&self.graphs, &quote!(graphs)));
-        quote!(#parts #graphs)
+        // A word that begins no statement may be the beginning of one.
+        let unknown = &source.heard.unknown;
+        let is_at_caret = |spoken: &&Spoken| spoken.word.text.contains(CARET);
+        let word = unknown.iter().find(is_at_caret).or_else(|| unknown.first());
+        let word = word.map(|Spoken { block, word, .. }| {
+            let (block, word) = (block_of(block), placed(&word.text, word.span));
+            quote!(fn word_at_caret() { let _ = words::#block::#word; })
+        });
+        quote!(#word #parts #graphs)
     }
 }
 
@@ -131,6 +149,65 @@ fn kinds<'s>(scopes: impl Iterator<Item = &'s Scope>) -> TokenStream {
         pub struct Quantity { pub x: f64, pub y: f64, pub z: f64 }
         #(#kinds)*
     }
+}
+
+/// The language's words: an item for each that the source has, by blocks, and for those that could stand where one of
+/// these is not known; an expression for each where it stands.
+fn words(source: &Source) -> TokenStream {
+    let is_known = |spoken: &&Spoken| meaning(spoken.block, &spoken.word.text).is_some() && is_name(&spoken.word.text);
+    let spoken: Vec<&Spoken> = source.heard.words.iter().filter(is_known).collect();
+    let mut blocks: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
+    for Spoken { block, word, .. } in &spoken {
+        blocks.entry(block).or_default().insert(&word.text);
+    }
+    for Spoken { block, beginnings, .. } in &source.heard.unknown {
+        let words = blocks.entry(block).or_default();
+        first_words(beginnings).filter(|word| is_name(word)).for_each(|word| {
+            words.insert(word);
+        });
+    }
+    let blocks = blocks.iter().map(|(block, words)| {
+        let words = words.iter().map(|word| {
+            let (name, docs) = (identifier(word), meaning(block, word).unwrap_or_default());
+            quote!(#[doc = #docs] pub struct #name;)
+        });
+        let block = block_of(block);
+        quote!(pub mod #block { #(#words)* })
+    });
+    let uses = spoken.iter().map(|Spoken { block, word, .. }| {
+        let (block, word) = (block_of(block), placed(&word.text, word.span));
+        quote!(let _ = words::#block::#word;)
+    });
+    quote!(mod words { #(#blocks)* } fn spoken() { #(#uses)* })
+}
+
+/// The module of the words of a block: `a_joint`.
+fn block_of(block: &str) -> Ident {
+    let letters = block.chars().filter(|letter| letter.is_alphanumeric() || *letter == ' ');
+    identifier(&letters.collect::<String>().replace(' ', "_"))
+}
+
+/// Whether a word can be the name of an item: Rust has some of the language's words for itself.
+fn is_name(word: &str) -> bool {
+    syn::parse_str::<Ident>(word).is_ok()
+}
+
+/// The functions of the language as methods of each graph and part: so they are offered beside its names.
+fn functions() -> TokenStream {
+    let shape = |shape: functions::Shape| match shape {
+        functions::Shape::Scalar => quote!(f64),
+        functions::Shape::Vector => quote!(kinds::Vector),
+        functions::Shape::Matrix => quote!([[f64; 3]; 3]),
+    };
+    let each = FUNCTIONS.iter().map(|function| {
+        let (name, docs, gives) = (identifier(function.name), function.to_string(), shape(function.gives));
+        let arguments = function.arguments.iter().map(|&(name, of)| {
+            let (name, of) = (identifier(name), shape(of));
+            quote!(#name: #of)
+        });
+        quote!(#[doc = #docs] fn #name(&self, #(#arguments),*) -> #gives { loop {} })
+    });
+    quote!(trait Functions { #(#each)* })
 }
 
 /// A field for what a thing can be asked for; `kinds` is the path of the kinds' module.
@@ -175,6 +252,8 @@ impl<'c> Meaning<'c> {
         });
         let mentions = scope.mentions.iter().filter(|path| own.is_field_of(path).is_none());
         let mentions = mentions.map(|path| self.mention(scope, path).0).filter(|words| !words.is_empty());
+        let called = scope.mentions.iter().filter_map(|path| self.function(scope, path));
+        let called: Vec<Ident> = called.map(|(word, place)| placed(word, *place)).collect();
         // Out of the modules of the names.
         let up = quote!(super);
         let of = |which: &'static str| {
@@ -191,7 +270,7 @@ impl<'c> Meaning<'c> {
             #(#frames)*
             #(#outputs)*
             impl #own_name {
-                fn mentions(of: &Self) { #(let _ = of #mentions;)* }
+                fn mentions(of: &Self) { #(let _ = of #mentions;)* #(let _ = <Self as #up::Functions>::#called;)* }
                 #parameters
                 #inputs
             }
@@ -218,9 +297,16 @@ impl<'c> Meaning<'c> {
         (words, path.len())
     }
 
+    /// The function of the language that a path is, where the scope calls nothing of its own so.
+    fn function<'p>(&self, scope: &'c Scope, path: &'p Path) -> Option<&'p (String, Span)> {
+        let [called] = path.as_slice() else { return None };
+        (functions::named(&called.0).is_some() && self.first(scope, &called.0).is_none()).then_some(called)
+    }
+
     /// The first name in which a word means nothing, up to that word, or else the first one that ends with a dot.
     fn at_caret(&self, scope: &'c Scope, faults: &[Fault], unfinished: &[Path]) -> Option<TokenStream> {
-        let open = scope.mentions.iter().find_map(|path| {
+        let mut names = scope.mentions.iter().filter(|path| self.function(scope, path).is_none());
+        let open = names.find_map(|path| {
             let (words, known) = self.mention(scope, path);
             let (text, place) = path.get(known)?;
             let last = &path[path.len() - 1].0;

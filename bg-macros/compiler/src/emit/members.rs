@@ -53,9 +53,27 @@ const EFFORT: Member = ("effort", OfBond, "Effort of its bond, sign along the ha
 const FLOW: Member = ("flow", OfBond, "Flow of its bond, sign along the half arrow.");
 const POWER: Member = ("power", Scalar, "Power into it. Unit: W.");
 
+/// What has a name in every graph and part, as `words::QUANTITIES` has it without what only templates name.
+pub(super) const EVERYWHERE: [(&str, &str); 4] = [
+    ("t", "The time. Unit: s."),
+    ("stored_energy", "The energy of all storage elements, bodies and springs among them. Unit: J."),
+    ("supplied_power", "The power of all sources into the model. Unit: W."),
+    ("dissipated_power", "The power of all resistors out of the model. Unit: W."),
+];
+
 /// Of a sample, within its clock's block.
 pub(super) const SAMPLE: [Member; 1] =
     [("last", Scalar, "What was held before the instant; only within a block `every`. Unit: the sample's own.")];
+
+/// Of a table of one argument, which is given like the table's own.
+const DERIVATIVES: [Member; 2] = [
+    ("derivative", Scalar, "`NAME.derivative(a)`: the slope at the argument a. Unit: that of the value per argument."),
+    (
+        "second_derivative",
+        Scalar,
+        "`NAME.second_derivative(a)`: how the slope changes there. Unit: that of the value per argument, twice.",
+    ),
+];
 
 /// What there is after the item's name and a dot.
 pub(super) fn of(item: &Item) -> Vec<Member> {
@@ -77,6 +95,7 @@ pub(super) fn of(item: &Item) -> Vec<Member> {
         }
         Item::Junction(_) => vec![EFFORT],
         Item::Element(element) => of_element(element.kind),
+        Item::Table(table) if table.second.is_none() => DERIVATIVES.to_vec(),
         _ => Vec::new(),
     }
 }
@@ -130,9 +149,11 @@ mod tests {
     use super::*;
     use crate::source::syntax::parse;
     use crate::source::walk::{Met, walk};
+    use crate::source::words::QUANTITIES;
 
     /// A graph with each kind of thing that has members.
     const GRAPH: &str = "
+        table curve: rad -> m = [[0, 0], [1, 1], [2, 4]], spline;
         param soft: m/N = 1; param stiff: N*m = 1;
         ground { point O = [0, 0, 0]; point P = [1, 0, 0]; }
         body a { mass 1; inertia [1, 1, 1]; point end = [1, 0, 0]; }
@@ -160,6 +181,13 @@ mod tests {
         shaft -> wheel; shaft -> loss; shaft -> twisted -> far; twisted -> twist; far -> second;";
 
     #[test]
+    fn what_is_everywhere_is_known() {
+        let mut known = QUANTITIES.to_vec();
+        known.retain(|name| *name != "gravity_field");
+        assert_eq!(EVERYWHERE.map(|(name, _)| name).to_vec(), known);
+    }
+
+    #[test]
     fn each_member_can_be_observed() {
         let source = parse(format!("graph G {{ {GRAPH} }}").parse().expect("tokens")).expect("a graph");
         let mut paths = vec!["a.end.position".to_owned(), "a.end.velocity".to_owned(), "a.end.arm".to_owned()];
@@ -170,7 +198,8 @@ mod tests {
                     paths.extend(of(item).iter().map(|(member, shape, _)| {
                         // A component of each vector, so that its shape is seen.
                         let component = if *shape == Vector { ".z" } else { "" };
-                        format!("{name}.{member}{component}")
+                        let argument = if matches!(item, Item::Table(_)) { "(1)" } else { "" };
+                        format!("{name}.{member}{component}{argument}")
                     }));
                 }
             });

@@ -63,6 +63,7 @@ impl Scope {
         let scope = Self { name, docs, fields: Vec::new(), outputs: Vec::new(), mentions: Vec::new() };
         let mut reading = Reading { scope, is_part, indices: Vec::new() };
         items.iter().for_each(|item| reading.item(item));
+        reading.everywhere();
         reading.scope
     }
 }
@@ -122,12 +123,26 @@ impl Reading {
 
     fn value(&mut self, value: &mut Expression, variable: Option<&str>) {
         each_name(value, &mut |value| {
-            let ExpressionKind::Name(name) = &value.kind else { return };
+            let name = match &value.kind {
+                ExpressionKind::Name(name) => name,
+                ExpressionKind::Call(function, _) => return self.mentioned(&[], function),
+                _ => return,
+            };
             let first = name.text.split(['.', '[']).next().unwrap_or_default();
             if variable != Some(first) && !self.indices.iter().any(|index| index == first) {
                 self.mentioned(&[], name);
             }
         });
+    }
+
+    /// The language's own names, but for what the scope declares itself.
+    fn everywhere(&mut self) {
+        for (word, docs) in members::EVERYWHERE {
+            if !self.scope.fields.iter().any(|known| known.word == word) {
+                let (word, docs) = (word.to_owned(), docs.to_owned());
+                self.scope.fields.push(Declared { word, place: Span::call_site(), docs, kind: Kind::Value });
+            }
+        }
     }
 
     fn ground(&mut self, ground: &Ground) {
@@ -216,7 +231,8 @@ fn kind(item: &Item) -> Option<Kind> {
     Some(match item {
         Item::Parameter(_) => Kind::Parameter,
         Item::Input(_) => Kind::Input,
-        Item::Let(_) | Item::Table(_) | Item::State(_) | Item::Memory(_) | Item::Track(_) => Kind::Value,
+        Item::Table(_) => Kind::Thing("Table".to_owned(), members::of(item)),
+        Item::Let(_) | Item::State(_) | Item::Memory(_) | Item::Track(_) => Kind::Value,
         Item::Every(_) => Kind::Thing("Sample".to_owned(), members::SAMPLE.to_vec()),
         Item::Port(Port::Alias(..)) => Kind::Port,
         Item::Port(Port::Junction(junction)) => {

@@ -191,9 +191,9 @@ fn check(
             if let (Some(declared), Quantity::Known(found)) = (declared, found)
                 && declared != found
             {
-                let what = format!("`{}` is declared in one unit, but its value has another", definition.name.text);
-                faults
-                    .push(Fault::new(definition.value.span, &GraphFault::Units { what, left: declared, right: found }));
+                let of_name = || format!("the value of `{}`", definition.name.text);
+                let what = definition.clause.as_ref().map_or_else(of_name, |clause| clause.what.clone());
+                faults.push(Fault::new(definition.value.span, &GraphFault::UnitOf { what, expected: declared, found }));
             }
         }
         for (index, node) in graph.nodes.iter().enumerate().filter(|(_, node)| !is_torn(node)) {

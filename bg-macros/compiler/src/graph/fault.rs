@@ -3,6 +3,7 @@
 use super::Shape;
 use crate::fault::Explain;
 use crate::graph::units::{Dimension, Domain};
+use crate::source::functions::{self, FUNCTIONS};
 use crate::source::numbers::{Constant, constant};
 
 /// A fault of the resolution.
@@ -26,6 +27,7 @@ pub enum GraphFault {
     VectorLength { found: usize },
     NoComponent { found: Shape },
     Units { what: String, left: Dimension, right: Dimension },
+    UnitOf { what: String, expected: Dimension, found: Dimension },
     Domains { from: String, to: String, left: Domain, right: Domain },
     NotDimensionless { what: String, found: Dimension },
     NoRoot { found: Dimension },
@@ -82,7 +84,7 @@ impl Explain for GraphFault {
             F::Shapes { .. } => "BG0313",
             F::ShapeOf { .. } | F::VectorLength { .. } => "BG0314",
             F::NoComponent { .. } => "BG0315",
-            F::Units { .. } | F::Domains { .. } => "BG0316",
+            F::Units { .. } | F::UnitOf { .. } | F::Domains { .. } => "BG0316",
             F::NotDimensionless { .. } => "BG0317",
             F::NoRoot { .. } => "BG0318",
             F::UnknownUnits { .. } => "BG0319",
@@ -126,7 +128,8 @@ impl Explain for GraphFault {
             F::UnknownFunction { name, .. } => format!("there is no function `{name}`"),
             F::UnknownDomain { name, .. } => format!("there is no energy domain `{name}`"),
             F::ArgumentCount { function, expected, found } => {
-                format!("`{function}` takes {expected} argument(s), not {found}")
+                let s = if *expected == 1 { "" } else { "s" };
+                format!("`{function}` takes {expected} argument{s}, not {found}")
             }
             F::NotANode { name } => format!("`{name}` is neither a junction nor an element, so no bond can end at it"),
             F::NotAValue { name } => format!("`{name}` is a junction or an element, which has no value of its own"),
@@ -144,6 +147,9 @@ impl Explain for GraphFault {
             F::VectorLength { found } => format!("a vector has three components; this one has {found}"),
             F::NoComponent { found } => format!("a {found} has no component x, y or z"),
             F::Units { what, left, right } => format!("{what}: the units {left} and {right} disagree"),
+            F::UnitOf { what, expected, found } => {
+                format!("{what} is {}, not {}", in_unit(*found), in_unit(*expected))
+            }
             F::Domains { from, to, left, right } => format!(
                 "bonds join `{from}` to `{to}` without a two-port: {} is not {}, the units {} and {} disagree",
                 left.name, right.name, left.effort, right.effort
@@ -222,14 +228,17 @@ impl Explain for GraphFault {
                 None => format!("declare `{name}`"),
             },
             F::UnknownFunction { .. } => {
-                format!("use one of {}", super::Builtin::names().collect::<Vec<_>>().join(" "))
+                format!("use one of {}", FUNCTIONS.map(|function| function.name).join(" "))
             }
             F::UnknownDomain { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownDomain { .. } => {
                 let names: Vec<_> = crate::graph::units::DOMAINS.iter().map(|domain| domain.name).collect();
                 format!("use one of {}", names.join(" "))
             }
-            F::ArgumentCount { expected, .. } => format!("give it {expected}"),
+            F::ArgumentCount { function, expected, .. } => match functions::named(function) {
+                Some(function) => format!("write {}", quoted(&function.calls())),
+                None => format!("give it {expected}"),
+            },
             F::NotANode { .. } => "name a junction or an element".to_owned(),
             F::NotAValue { name } => format!("write `{name}.flow` or `{name}.effort`"),
             F::OnePortBonds { name, count: 0, .. } | F::NoBond { name } => {
@@ -280,6 +289,10 @@ impl Explain for GraphFault {
                 format!("write `({symbol})` if you mean that, or rename it if you mean the unit")
             }
             F::Units { .. } => "change one of the two so that they agree".to_owned(),
+            F::UnitOf { expected, .. } => {
+                let value = if *expected == Dimension::NONE { "" } else { "a value " };
+                format!("write {value}{}, or declare the unit that it has", in_unit(*expected))
+            }
             F::Domains { from, to, left, right } => {
                 let (effort, flow) = (left.effort_dimension(), Dimension::WATT.per(right.effort_dimension()));
                 let ratio = flow.per(Dimension::WATT.per(effort));
@@ -320,4 +333,14 @@ impl Explain for GraphFault {
             F::EmptyGraph { .. } => "bond its elements in a chain, `a -> b;`".to_owned(),
         }
     }
+}
+
+/// What has this dimension, as a sentence says it of a value.
+fn in_unit(dimension: Dimension) -> String {
+    if dimension == Dimension::NONE { "a pure number".to_owned() } else { format!("in {dimension}") }
+}
+
+/// Codes between which a reader chooses.
+fn quoted(codes: &[String]) -> String {
+    codes.iter().map(|code| format!("`{code}`")).collect::<Vec<_>>().join(" or ")
 }

@@ -7,6 +7,7 @@ use proc_macro2::Span;
 use super::NodeId;
 use super::units::Dimension;
 use crate::source::ast::{BinaryOperator, Comparison};
+use crate::source::words::{value_of, word_of};
 
 /// An expression with its place in the source.
 #[derive(Clone, Debug)]
@@ -139,51 +140,46 @@ pub enum Builtin {
     RotationZ,
 }
 
-/// Name, function and number of arguments.
-const NAMES: [(&str, Builtin, usize); 25] = [
-    ("sqrt", Builtin::Sqrt, 1),
-    ("root", Builtin::Root, 2),
-    ("sin", Builtin::Sin, 1),
-    ("cos", Builtin::Cos, 1),
-    ("tan", Builtin::Tan, 1),
-    ("asin", Builtin::Asin, 1),
-    ("acos", Builtin::Acos, 1),
-    ("atan2", Builtin::Atan2, 2),
-    ("exp", Builtin::Exp, 1),
-    ("ln", Builtin::Ln, 1),
-    ("tanh", Builtin::Tanh, 1),
-    ("abs", Builtin::Abs, 1),
-    ("pow", Builtin::Pow, 2),
-    ("dot", Builtin::Dot, 2),
-    ("cross", Builtin::Cross, 2),
-    ("norm", Builtin::Norm, 1),
-    ("skew", Builtin::Skew, 1),
-    ("transpose", Builtin::Transpose, 1),
-    ("inverse", Builtin::Inverse, 1),
-    ("outer", Builtin::Outer, 2),
-    ("identity", Builtin::Identity, 0),
-    ("diagonal", Builtin::Diagonal, 1),
-    ("rotation_x", Builtin::RotationX, 1),
-    ("rotation_y", Builtin::RotationY, 1),
-    ("rotation_z", Builtin::RotationZ, 1),
+/// What is one of these by the names of the language's functions; the others are words of the resolver's own.
+const NAMES: [(&str, Builtin); 25] = [
+    ("sqrt", Builtin::Sqrt),
+    ("root", Builtin::Root),
+    ("sin", Builtin::Sin),
+    ("cos", Builtin::Cos),
+    ("tan", Builtin::Tan),
+    ("asin", Builtin::Asin),
+    ("acos", Builtin::Acos),
+    ("atan2", Builtin::Atan2),
+    ("exp", Builtin::Exp),
+    ("ln", Builtin::Ln),
+    ("tanh", Builtin::Tanh),
+    ("abs", Builtin::Abs),
+    ("pow", Builtin::Pow),
+    ("dot", Builtin::Dot),
+    ("cross", Builtin::Cross),
+    ("norm", Builtin::Norm),
+    ("skew", Builtin::Skew),
+    ("transpose", Builtin::Transpose),
+    ("inverse", Builtin::Inverse),
+    ("outer", Builtin::Outer),
+    ("identity", Builtin::Identity),
+    ("diagonal", Builtin::Diagonal),
+    ("rotation_x", Builtin::RotationX),
+    ("rotation_y", Builtin::RotationY),
+    ("rotation_z", Builtin::RotationZ),
 ];
 
 impl Builtin {
-    /// The function of this name with its number of arguments.
+    /// The function of this name.
     #[must_use]
-    pub fn named(name: &str) -> Option<(Self, usize)> {
-        NAMES.iter().find(|(known, ..)| *known == name).map(|&(_, builtin, arguments)| (builtin, arguments))
-    }
-
-    /// All names, for near misses.
-    pub fn names() -> impl Iterator<Item = &'static str> {
-        NAMES.iter().map(|(name, ..)| *name).chain(["guess", "integral", "unwrapped", "delay"])
+    pub fn named(name: &str) -> Option<Self> {
+        value_of(&NAMES, name)
     }
 
     /// The function's name.
     #[must_use]
     pub fn name(self) -> &'static str {
-        NAMES.iter().find(|(_, builtin, _)| *builtin == self).map_or("", |(name, ..)| name)
+        word_of(&NAMES, &self)
     }
 }
 

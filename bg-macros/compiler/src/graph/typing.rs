@@ -259,8 +259,7 @@ impl Checker<'_, '_> {
             if let Quantity::Known(found) = quantity
                 && found != declared
             {
-                let what = format!("{} has the first and is declared in the second", what());
-                self.fault(argument.span, &GraphFault::Units { what, left: found, right: declared });
+                self.fault(argument.span, &GraphFault::UnitOf { what: what(), expected: declared, found });
             }
         }
         let dimension = (0..order).fold(table.value, |dimension, _| dimension.per(table.arguments[0]));

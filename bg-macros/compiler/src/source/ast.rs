@@ -26,8 +26,36 @@ pub struct Source {
     pub graphs: Vec<Graph>,
     /// Names that end with a dot: faults of syntax, whose statements are not there.
     pub unfinished: Vec<Name>,
+    /// The words of the language, for an editor.
+    pub heard: Heard,
     /// The most statements of a graph with its repetitions and parts written out; none: [`MOST_STATEMENTS`].
     pub most: Option<usize>,
+}
+
+/// Words where statements have them. They print as nothing: two sources are alike however they are written.
+#[derive(Clone, Default)]
+pub struct Heard {
+    /// Words of the language.
+    pub words: Vec<Spoken>,
+    /// Words that begin no statement of their block: faults of syntax.
+    pub unknown: Vec<Spoken>,
+}
+
+impl Debug for Heard {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        f.write_str("Heard")
+    }
+}
+
+/// A word where a statement of a block has it.
+#[derive(Clone, Debug)]
+pub struct Spoken {
+    /// The block, as messages call it.
+    pub block: &'static str,
+    /// The words with which its statements begin.
+    pub beginnings: &'static [&'static str],
+    /// The word, with its place.
+    pub word: Name,
 }
 
 /// What a graph has at most, unless its source says otherwise: an electrical ladder of this size is checked in half a

@@ -217,8 +217,8 @@ impl Resolver {
             let (shape, quantity) = types.declared(&observation.value, declared, &mut faults);
             let unit = match (declared, quantity) {
                 (Some(declared), Quantity::Known(found)) if declared.dimension != found => {
-                    let what = format!("`{}` is declared in one unit, but its value has another", observation.name);
-                    let fault = GraphFault::Units { what, left: declared.dimension, right: found };
+                    let what = format!("the value of `{}`", observation.name);
+                    let fault = GraphFault::UnitOf { what, expected: declared.dimension, found };
                     faults.push(Fault::new(observation.value.span, &fault));
                     String::new()
                 }
@@ -251,7 +251,7 @@ impl Resolver {
             let rate = declared.per(Dimension::SECOND);
             expect_scalar(&types, value, &format!("the rate of `{name}`"), rate, &mut faults);
             if let Some(start) = start {
-                let of_delay = of_signal.map(|_| "what a delay gives before the run".to_owned());
+                let of_delay = of_signal.map(|_| "the start of the delay".to_owned());
                 let what = of_delay.unwrap_or_else(|| format!("the start of `{name}`"));
                 expect_scalar(&types, start, &what, declared, &mut faults);
             }
@@ -286,8 +286,8 @@ fn expect_scalar(types: &Types<'_>, term: &Term, what: &str, expected: Dimension
         && let Quantity::Known(found) = quantity
         && found != expected
     {
-        let what = format!("{what} has the first and should have the second");
-        faults.push(Fault::new(term.span, &GraphFault::Units { what, left: found, right: expected }));
+        let fault = GraphFault::UnitOf { what: what.to_owned(), expected, found };
+        faults.push(Fault::new(term.span, &fault));
     }
 }
 

@@ -12,7 +12,8 @@ use crate::fault::near_miss;
 use crate::graph::term::{Builtin, Lookup, Operation, Reference, Term, TermKind};
 use crate::graph::units::Dimension;
 use crate::graph::{GraphFault, Integral, NodeId, Turn};
-use crate::source::ast::{self, BinaryOperator, Expression, ExpressionKind, Name};
+use crate::source::ast::{self, BinaryOperator, Comparison, Expression, ExpressionKind, Name};
+use crate::source::functions::{self, Function};
 use crate::source::words::table_called;
 
 impl Resolver {
@@ -63,11 +64,7 @@ impl Resolver {
             return self.lookup(Lookup { table, order }, function, terms);
         }
         let builtin = Builtin::named(&function.text);
-        let expected = match function.text.as_str() {
-            "guess" | "integral" => Some(1),
-            "unwrapped" => Some(3),
-            _ => builtin.map(|(_, count)| count),
-        };
+        let expected = functions::named(&function.text).map(Function::least);
         match expected {
             None => {
                 let near = nearest_call(&function.text, &self.graph.tables);
@@ -114,7 +111,15 @@ impl Resolver {
                 self.graph.turns.push(Turn { name: String::new(), direction, speed, is_read: false });
                 TermKind::Reference(Reference::Turn(self.graph.turns.len() - 1))
             }
-            (_, Some((builtin, _))) => TermKind::Call(builtin, terms),
+            ("min" | "max", _) => {
+                let condition = format!("{} < {}", arguments[0], arguments[1]);
+                let (second, first) = (terms.remove(1), terms.remove(0));
+                let [smaller, larger] = [first.clone(), second.clone()];
+                let chosen = if function.text == "min" { [smaller, larger] } else { [larger, smaller] };
+                let [then, otherwise] = chosen;
+                TermKind::If(Comparison::Less, condition, Box::new([first, second, then, otherwise]))
+            }
+            (_, Some(builtin)) => TermKind::Call(builtin, terms),
             (_, None) => TermKind::Number(0.0),
         };
         Term { kind, span }

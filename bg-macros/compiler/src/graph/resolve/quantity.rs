@@ -39,8 +39,7 @@ impl Resolver {
         if let Quantity::Known(found) = found
             && found != unit.dimension
         {
-            let what = "the declared unit is the first, the number has the second".to_owned();
-            let fault = GraphFault::Units { what, left: unit.dimension, right: found };
+            let fault = GraphFault::UnitOf { what: "the number".to_owned(), expected: unit.dimension, found };
             self.faults.push(Fault::new(expression.span, &fault));
         }
         Some(unit.from_si(value))
@@ -155,7 +154,7 @@ mod tests {
         assert_eq!(faults(push, "x: mm = coil.q + 3 mm"), "");
         assert_eq!(faults(push, "x: mm = 2 * coil.q"), "");
         assert_eq!(faults(push, "x: mm = coil.q + 3"), "BG0316 cannot add these: the units m and 1 disagree");
-        let default = "BG0316 the declared unit is the first, the number has the second: the units m and s disagree";
+        let default = "BG0316 the number is in s, not in m";
         assert_eq!(faults("input push: N; param a: mm = 3 s;", "x: m = a"), default);
         let twice = "input push: N; param m: kg = 3;";
         let name = "BG0338 `m` in `N/m` is a unit, and there is something of this name";

@@ -7,9 +7,10 @@ use bg_units::Unit;
 use super::{Entity, Resolver};
 use crate::fault::near_miss;
 use crate::graph::table::{pieces, surface};
-use crate::graph::term::{Builtin, Lookup, Term, TermKind};
+use crate::graph::term::{Lookup, Term, TermKind};
 use crate::graph::{GraphFault, Table};
 use crate::source::ast::{self, Between, Beyond, Expression, ExpressionKind, Name};
+use crate::source::functions::{self, FUNCTIONS};
 use crate::source::words::DERIVATIVES;
 
 /// What the last value of a periodic table may differ from its first one, beside the largest: rounding.
@@ -156,7 +157,7 @@ fn pair_of(row: &Expression) -> Option<&[Expression; 2]> {
 /// What may be meant by the call of an unknown function.
 pub(super) fn nearest_call(function: &str, tables: &[Table]) -> Option<String> {
     if let Some((value, function)) = function.rsplit_once('.') {
-        if Builtin::named(function).is_some() {
+        if functions::named(function).is_some() {
             return Some(format!("{function}({value})"));
         }
         if tables.iter().any(|table| table.name == value) {
@@ -164,6 +165,9 @@ pub(super) fn nearest_call(function: &str, tables: &[Table]) -> Option<String> {
             return Some(format!("{value}.{word}"));
         }
     }
+    if let Some(written) = functions::of_elsewhere(function) {
+        return Some(written.to_owned());
+    }
     let of_tables = near_miss(function, tables.iter().map(|table| table.name.as_str()));
-    of_tables.or_else(|| near_miss(function, Builtin::names())).map(str::to_owned)
+    of_tables.or_else(|| near_miss(function, FUNCTIONS.iter().map(|known| known.name))).map(str::to_owned)
 }

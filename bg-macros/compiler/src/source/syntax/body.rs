@@ -11,7 +11,7 @@ use super::{
 use crate::source::ast::{Axis, Body, Expression, ExpressionKind, Name, Shape, Solid};
 
 /// The block of a body.
-const BODY: Place = Place {
+pub(super) const BODY: Place = Place {
     name: "a body",
     words: &["cuboid", "cylinder", "sphere", "density", "mass", "center", "inertia", "point", "start"],
     list: false,

@@ -13,7 +13,7 @@ use super::{
     token::{Token, TokenKind, joined, tokens},
 };
 use crate::fault::{Fault, Faults};
-use crate::source::ast::{Name, Words};
+use crate::source::ast::{Heard, Name, Spoken, Words};
 use crate::source::numbers::symbol_for;
 
 /// The proof that a fault has been noted.
@@ -25,7 +25,7 @@ pub(super) type Parsed<T> = Result<T, Reported>;
 
 /// A kind of block: what it is called and what stands in it.
 #[derive(Debug)]
-pub(super) struct Place {
+pub(in crate::source) struct Place {
     /// `a graph`, for messages.
     pub name: &'static str,
     /// The words that begin a statement.
@@ -46,6 +46,8 @@ pub(super) struct Noted {
     pub faults: Faults,
     /// Names that end with a dot.
     pub unfinished: Vec<Name>,
+    /// Words of the language.
+    pub heard: Heard,
 }
 
 /// A walk over one level of tokens.
@@ -143,7 +145,29 @@ impl<'f> Cursor<'f> {
 
     /// Steps over `word` when it is ahead.
     pub fn eat_word(&mut self, word: &str) -> Option<Span> {
-        (self.word() == Some(word)).then(|| self.advance())
+        (self.word() == Some(word)).then(|| self.advance_word())
+    }
+
+    /// Steps over the token ahead, a word of the language, and gives its place.
+    pub fn advance_word(&mut self) -> Span {
+        self.note_word(self.at);
+        self.advance()
+    }
+
+    fn spoken(&self, at: usize) -> Option<Spoken> {
+        match self.tokens.get(at) {
+            Some(Token { kind: TokenKind::Word(word), span }) => {
+                let Place { name: block, words: beginnings, .. } = self.place;
+                Some(Spoken { block, beginnings, word: Name::new(word.clone(), *span) })
+            }
+            _ => None,
+        }
+    }
+
+    /// Notes that the token at this place is a word of the language, where it is a word.
+    fn note_word(&self, at: usize) {
+        let spoken = self.spoken(at);
+        self.noted.borrow_mut().heard.words.extend(spoken);
     }
 
     /// Steps over `symbol`, which must be ahead.
@@ -220,7 +244,11 @@ impl<'f> Cursor<'f> {
     /// Notes that the token ahead begins no statement of this block.
     pub fn unknown_statement(&self) -> Reported {
         let word = match self.peek() {
-            Some(TokenKind::Word(word)) => self.whole_clause(word),
+            Some(TokenKind::Word(word)) => {
+                let spoken = self.spoken(self.at);
+                self.noted.borrow_mut().heard.unknown.extend(spoken);
+                self.whole_clause(word)
+            }
             Some(TokenKind::Literal(literal)) => literal.to_string(),
             _ => return self.unexpected(&format!("a statement of {}", self.place.name)),
         };
@@ -354,6 +382,9 @@ impl Cursor<'_> {
                 continue;
             }
             self.head = self.at;
+            if !self.starts_chain() && self.starts_statement() {
+                self.note_word(self.head);
+            }
             if statement(self).is_err() {
                 self.skip_statement();
             }

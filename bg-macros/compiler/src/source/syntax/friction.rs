@@ -6,21 +6,22 @@ use super::cursor::{Cursor, Parsed, Place};
 use crate::source::ast::{Friction, Name, Orifice, Stop};
 
 /// The block of a friction.
-const FRICTION: Place = Place {
+pub(super) const FRICTION: Place = Place {
     name: "a friction",
     words: &["coulomb", "static", "stribeck", "viscous", "normal", "radius", "creep", "stiffness"],
     list: false,
 };
 
 /// The block of a stop.
-const STOP: Place = Place {
+pub(super) const STOP: Place = Place {
     name: "a stop",
     words: &["at least", "at most", "stiffness", "damping", "restitution", "rest below", "start"],
     list: false,
 };
 
 /// The block of an orifice.
-const ORIFICE: Place = Place { name: "an orifice", words: &["area", "coefficient", "density", "laminar"], list: false };
+pub(super) const ORIFICE: Place =
+    Place { name: "an orifice", words: &["area", "coefficient", "density", "laminar"], list: false };
 
 impl Cursor<'_> {
     /// `friction NAME on TARGET { ... }`

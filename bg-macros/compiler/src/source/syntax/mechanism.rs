@@ -17,10 +17,10 @@ use crate::source::ast::{
 use crate::source::words::{AXES, DRIVES, value_of, word_of};
 
 /// The block of the ground.
-const GROUND: Place = Place { name: "`ground`", words: &["point"], list: false };
+pub(super) const GROUND: Place = Place { name: "`ground`", words: &["point"], list: false };
 
 /// The block of a joint.
-const JOINT: Place = Place {
+pub(super) const JOINT: Place = Place {
     name: "a joint",
     words: &[
         "stiffness",
@@ -40,16 +40,16 @@ const JOINT: Place = Place {
 };
 
 /// The block of a spring.
-const SPRING: Place = Place { name: "a spring", words: &["stiffness", "damping", "length"], list: false };
+pub(super) const SPRING: Place = Place { name: "a spring", words: &["stiffness", "damping", "length"], list: false };
 
 /// The block of a speed drive.
-const DRIVE: Place = Place { name: "a speed drive", words: &["stiffness", "damping"], list: false };
+pub(super) const DRIVE: Place = Place { name: "a speed drive", words: &["stiffness", "damping"], list: false };
 
 /// The block of a contact.
-const CONTACT: Place = Place { name: "a contact", words: &["x", "y", "z"], list: false };
+pub(super) const CONTACT: Place = Place { name: "a contact", words: &["x", "y", "z"], list: false };
 
 /// The block of a contact of shapes.
-const SHAPE_CONTACT: Place = Place {
+pub(super) const SHAPE_CONTACT: Place = Place {
     name: "a contact of shapes",
     words: &["stiffness", "exponent", "damping", "dissipation", "restitution", "rest below", "rigid"],
     list: false,
@@ -237,7 +237,7 @@ impl Cursor<'_> {
             let fault = SyntaxFault::UnknownKind { what: "a joint kind", word, known: JOINTS };
             return Err(self.note(self.span(), &fault));
         }
-        let span = self.advance();
+        let span = self.advance_word();
         Ok(match word.as_str() {
             "revolute" => JointKind::Revolute(self.axis(&word, span)?),
             "prismatic" => JointKind::Prismatic(self.axis(&word, span)?),
@@ -392,7 +392,7 @@ impl Cursor<'_> {
             let fault = SyntaxFault::UnknownKind { what: "a shape", word, known: SHAPES };
             return Err(self.note(self.span(), &fault));
         }
-        let span = self.advance();
+        let span = self.advance_word();
         Ok(Some(match word.as_str() {
             "circle" => Touching::Circle(self.expression()?),
             "hole" => Touching::Hole(self.expression()?),

@@ -39,6 +39,28 @@ pub use fault::SyntaxFault;
 /// The macro call's outermost level.
 const CALL: Place = Place { name: "the macro call", words: &["graph", "part"], list: false };
 
+/// The blocks whose statements begin with words.
+#[cfg(test)]
+pub(super) const BLOCKS_OF_WORDS: [&Place; 17] = [
+    &CALL,
+    &statement::GRAPH,
+    &statement::PART,
+    &statement::EVERY,
+    &body::BODY,
+    &mechanism::GROUND,
+    &mechanism::JOINT,
+    &mechanism::SPRING,
+    &mechanism::DRIVE,
+    &mechanism::CONTACT,
+    &mechanism::SHAPE_CONTACT,
+    &friction::FRICTION,
+    &friction::STOP,
+    &friction::ORIFICE,
+    &scene::SCENE,
+    &scene::OBSERVE,
+    &part::USE,
+];
+
 /// The parts and graphs of a macro call, or all of its faults of syntax.
 ///
 /// # Errors
@@ -61,8 +83,8 @@ pub fn parse_leniently(tokens: TokenStream) -> (Source, Vec<Fault>) {
     if source.graphs.is_empty() && source.parts.is_empty() && noted.borrow().faults.is_empty() {
         call.note(call.span(), &SyntaxFault::NoGraph);
     }
-    let Noted { faults, unfinished } = noted.into_inner();
-    source.unfinished = unfinished;
+    let Noted { faults, unfinished, heard } = noted.into_inner();
+    (source.unfinished, source.heard) = (unfinished, heard);
     (source, faults)
 }
 

@@ -19,7 +19,7 @@ use crate::source::visibility::Visibility;
 use crate::source::words::{STARTS, value_of};
 
 /// The block of a use.
-const USE: Place = Place { name: "the use of a part", words: &["start"], list: true };
+pub(super) const USE: Place = Place { name: "the use of a part", words: &["start"], list: true };
 
 /// Inside of `[i + 1]`.
 const INDEX: Place = Place { name: "the brackets", words: &[], list: false };

@@ -12,14 +12,14 @@ use super::{
 use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene, Tune, Watch};
 
 /// The block of a scene.
-const SCENE: Place = Place {
+pub(super) const SCENE: Place = Place {
     name: "a scene",
     words: &["observe", "tune", "without", "rigid", "all", "dependent", "angles", "expect"],
     list: false,
 };
 
 /// `observe { ... }`
-const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
+pub(super) const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
 
 /// `tune { ... }` and its like.
 const NAMES: Place = Place { name: "the list", words: &[], list: true };

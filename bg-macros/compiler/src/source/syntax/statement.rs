@@ -80,7 +80,7 @@ const WORDS: [&str; 43] = [
 ];
 
 /// The block of a clock.
-const EVERY: Place = Place { name: "`every`", words: &["sample"], list: false };
+pub(super) const EVERY: Place = Place { name: "`every`", words: &["sample"], list: false };
 
 /// Inside of `[3]` and `(effort u)`.
 const GROUP: Place = Place { name: "the group", words: &[], list: false };
@@ -342,7 +342,7 @@ fn table(cursor: &mut Cursor) -> Parsed<Table> {
         } else {
             return Err(cursor.unexpected("`straight`, `monotone`, `spline`, `held`, `continued` or `periodic`"));
         }
-        cursor.advance();
+        cursor.advance_word();
     }
     cursor.end_statement("`,`");
     let (between, beyond) = (between.unwrap_or_default(), beyond.unwrap_or_default());
