@@ -132,3 +132,18 @@ fn a_run_says_which_text_it_is_of_and_from_which_commit() {
     let fault = refused(folder.path(), "run swing.bond --again out/summary.json --out again --no-figures", 2);
     assert!(fault.contains("the model has other equations or outputs than then"), "{fault}");
 }
+
+#[test]
+fn a_report_has_the_name_of_its_file_and_in_its_title_the_scene() {
+    let folder = folder();
+    let (graph, scene) = (SWING.trim_end().trim_end_matches('}'), "scene Idle { observe { v: m/s = slide.flow } }");
+    write(&folder, "swing.bond", &format!("{graph} {scene} }}"));
+    let of = |line: &str| {
+        told(folder.path(), line);
+        std::fs::read_to_string(folder.path().join("out/swing.html")).expect("a page")
+    };
+    let (whole, idle) = (of("report swing.bond --t-end 0.1"), of("report swing.bond --scene idle --t-end 0.1"));
+    let graph = SWING.split("graph ").nth(1).and_then(|rest| rest.split(' ').next()).expect("a name");
+    assert!(whole.contains(&format!("<h1>{graph}</h1>")) && whole.contains(&format!("<title>{graph}</title>")));
+    assert!(idle.contains(&format!("<h1>{graph}: Idle</h1>")));
+}
