@@ -99,10 +99,10 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
     bar.finish_and_clear();
     match outcome {
         Ok(outcome) => {
-            // The last one of several processes draws what all have made.
-            let has_all = (0..outcome.shards).all(|shard| folder.has(shard, !plan.wanted.trajectories.is_empty()));
-            let told = if has_all { drawn::write(program, &folder)? } else { String::new() };
-            let page = if has_all { format!("; open {} there", drawn::PAGE) } else { String::new() };
+            // The last one of several processes draws what all have made; where it was killed before, another one.
+            let draws = outcome.is_last || !drawn::is_there(&folder) && folder.is_complete(outcome.shards);
+            let told = if draws { drawn::write(program, &folder)? } else { String::new() };
+            let page = if draws { format!("; open {} there", drawn::PAGE) } else { String::new() };
             let told = format!("{told}{}{page}\n", sentence(&outcome, &folder, &plan));
             Ok(ended(console::tell_as(*json, &told, || json_of(&outcome, &folder)).err()))
         }
@@ -129,7 +129,7 @@ fn statistics(folder: &Folder) -> serde_json::Value {
 
 /// What was done, and how to look at it.
 fn sentence(outcome: &Outcome, folder: &Folder, plan: &Plan) -> String {
-    let Outcome { runs, shards, own, found, made, made_runs, failed } = *outcome;
+    let Outcome { runs, shards, own, found, made, made_runs, failed, .. } = *outcome;
     let part = if own == shards { String::new() } else { format!("{own} of its {shards} files are of this part; ") };
     let before = if found == 0 { String::new() } else { format!(", {found} were there") };
     let samples = if plan.wanted.has_sums() {

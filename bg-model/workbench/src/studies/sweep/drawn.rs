@@ -65,6 +65,12 @@ struct Toleranced {
     first_order: Option<(f64, Vec<f64>, f64)>,
 }
 
+/// Whether the folder has a page.
+#[must_use]
+pub fn is_there(folder: &Folder) -> bool {
+    folder.path().join(PAGE).exists()
+}
+
 /// Writes the page of what is in a folder, and gives a text on tolerances, which is empty without any.
 ///
 /// # Errors

@@ -118,6 +118,8 @@ pub struct Outcome {
     pub made_runs: usize,
     /// Those of them that failed.
     pub failed: usize,
+    /// Whether the shards of all parts are there now, some of them by this process: it is the last one.
+    pub is_last: bool,
 }
 
 /// Is told how many runs of how many are done, and says whether to go on.
@@ -193,7 +195,11 @@ fn all(
         pool.install(|| of_shards.into_par_iter().try_for_each(|(shard, done)| written(job, folder, shard, &done)))?;
         outcome.made += shards.len();
     }
-    folder.clear(&own);
+    // Who has made nothing does not ask: of thousands of processes that are started again each would ask for all files.
+    outcome.is_last = (outcome.made > 0 || share == Share::ALL) && folder.is_complete(outcome.shards);
+    if outcome.is_last {
+        folder.clear(outcome.shards);
+    }
     Ok(outcome)
 }
 
