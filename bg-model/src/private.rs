@@ -4,17 +4,27 @@
 //! Generated code calls besides: the public traits, tables and errors of this crate, the arithmetic of series, nalgebra
 //! and serde.
 
+pub use alloc::boxed::Box;
 pub use alloc::vec;
+pub use alloc::vec::Vec;
 
 #[cfg(feature = "macros")]
 pub use bg_macros::picture;
 
+#[cfg(feature = "std")]
+pub use crate::model::dynamics::Abreast;
 pub use crate::model::dynamics::Over;
 pub use crate::model::iteration::{Equations, lift, newton};
 pub use crate::model::joined::joined;
 pub use crate::model::linear::pivot::Pivot;
+#[cfg(feature = "std")]
+pub use crate::model::mechanism::into_lanes;
+pub use crate::model::mechanism::join;
 pub use crate::model::parameters::serialized::{deserialize, serialize};
 pub use crate::model::requirement::{Requirement, require};
+#[cfg(feature = "std")]
+pub use crate::model::scalar::lanes::{Lanes, Vector};
+pub use crate::model::scalar::slopes::Slopes;
 pub use crate::model::series::{store, window};
 pub use crate::model::start::{StartRoutine, StartTable, Starting, decided, kept, redundant, share, sides, start};
 pub use crate::model::vectorised::vectorised_rate;
@@ -39,4 +49,5 @@ macro_rules! __bond_graph_of_one_version {
         ));
     };
 }
+pub use crate::__bond_graph_in_vectors as in_vectors;
 pub use crate::__bond_graph_of_one_version as of_one_version;

@@ -3,7 +3,7 @@
 use bg_model::bond_graph;
 use bg_model::input::Input;
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::Mechanism;
+use bg_model::mechanism::{InEachBuild, Mechanism};
 use bg_model::parameters::Parameters;
 use bg_model::run::{LaneError, Request, RunError, Simulation, Trajectory, in_lanes};
 use bg_model::simulation::{Peaks, Samples};
@@ -166,10 +166,12 @@ fn compared<Me: Mechanism>(model: &Me, request: &Request, between: &[(&str, [f64
         table.iter().map(|info| info.name).enumerate().map(value).collect()
     };
     let values: Vec<Vec<f64>> = (0..RUNS).map(values).collect();
-    let runs = in_lanes(model, request, &values);
-    assert_eq!(runs.len(), RUNS);
-    for (number, (run, values)) in runs.iter().zip(&values).enumerate() {
-        assert_eq!(told(run), told(&single(model, request, values)), "run {number}: {values:?}");
+    // Of functions in vectors, and of those of each run by itself.
+    let [runs, apart] = [in_lanes(&InEachBuild(model.clone()), request, &values), in_lanes(model, request, &values)];
+    assert_eq!([runs.len(), apart.len()], [RUNS; 2]);
+    for (number, ((run, apart), values)) in runs.iter().zip(&apart).zip(&values).enumerate() {
+        let alone = told(&single(model, request, values));
+        assert_eq!([told(run), told(apart)], [alone.clone(), alone], "run {number}: {values:?}");
     }
     let failed = runs.iter().filter(|run| run.is_err()).count();
     (runs.into_iter().filter_map(Result::ok).collect(), failed)

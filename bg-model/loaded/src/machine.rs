@@ -410,16 +410,19 @@ impl Reversible for Interpreted {
 }
 
 impl<V: Slopes> Joinable<V> for Interpreted {
-    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Result<SideBySide<V>, ParameterError> {
+    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Option<Result<SideBySide<V>, ParameterError>> {
         let joined = |place: usize| {
             let of_each: Vec<Gradient> = values.iter().map(|values| values[place]).collect();
             GradientIn::joined(&of_each)
         };
         let all = (0..self.parameters.len()).map(joined).collect();
-        Ok(SideBySide {
-            each: values.iter().map(|values| self.lifted(values)).collect::<Result<_, _>>()?,
-            all: Box::new(Interpreted::<GradientIn<V>>::of_values(&self.blueprint, all, &self.inputs)?),
-        })
+        let made = || {
+            Ok(SideBySide {
+                each: values.iter().map(|values| self.lifted(values)).collect::<Result<_, _>>()?,
+                all: Box::new(Interpreted::<GradientIn<V>>::of_values(&self.blueprint, all, &self.inputs)?),
+            })
+        };
+        Some(made())
     }
 }
 

@@ -62,6 +62,16 @@ pub trait Elimination<S: Scalar, const N: usize> {
 
     /// Replaces `b` by the solution y of (I - c J) y = b, with the `factors` of I - c J.
     fn substitute<F: Field<S>>(&self, factors: &[F], b: &mut [F; N]);
+
+    /// [`Elimination::eliminate`] in little code, for machines that are rare: the same values, in more time.
+    fn eliminate_compactly<F: Field<S>>(&self, c: F, entries: &[S], factors: &mut [F]) -> bool {
+        self.eliminate(c, entries, factors)
+    }
+
+    /// [`Elimination::substitute`], likewise.
+    fn substitute_compactly<F: Field<S>>(&self, factors: &[F], b: &mut [F; N]) {
+        self.substitute(factors, b);
+    }
 }
 
 /// A system some of whose states are of second order: displacements and orientations, whose rates are smooth functions

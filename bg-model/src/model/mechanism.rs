@@ -9,7 +9,7 @@ use alloc::vec::Vec;
 
 use crate::model::description::Description;
 #[cfg(feature = "std")]
-use crate::model::dynamics::{Abreast, InLanes, Swept, Typed};
+use crate::model::dynamics::{Abreast, EachAlone, InLanes, Swept, Typed};
 use crate::model::dynamics::{InVectors, Machine, Over, Rates, shared};
 use crate::model::input::Input;
 use crate::model::parameters::{ParameterError, Parameters};
@@ -19,8 +19,6 @@ use crate::model::scalar::lanes::{Avx2, Avx512};
 use crate::model::scalar::lanes::{Lanes, Vector};
 #[cfg(all(feature = "std", not(target_arch = "x86_64")))]
 use crate::model::scalar::slopes::Eight;
-#[cfg(all(feature = "std", target_arch = "x86_64"))]
-use crate::model::scalar::slopes::Everywhere;
 use crate::model::scalar::slopes::Slopes;
 use crate::model::scalar::{Gradient, GradientIn, Scalar};
 use crate::model::system::Model;
@@ -56,7 +54,69 @@ pub trait Mechanism: Clone {
 
     /// Hands the model to `visitor`, and with it what makes the same model of parameters in `S`, and that one in `T`.
     fn visit_lifted<S: Scalar, T: Scalar, V: LiftedVisitor<S, T>>(&self, visitor: V) -> V::Output;
+
+    /// [`Laned::in_lanes`]; none by default.
+    #[cfg(feature = "std")]
+    #[doc(hidden)]
+    fn lanes<V: Vector>(&self, _values: &[Lanes<V>]) -> Option<Result<Box<dyn Abreast<V>>, ParameterError>> {
+        None
+    }
+
+    /// [`Joinable::side_by_side`]; none by default.
+    #[doc(hidden)]
+    fn slopes<V: Slopes>(&self, _values: &[Vec<Gradient>]) -> Option<Result<SideBySide<V>, ParameterError>> {
+        None
+    }
 }
+
+/// What a generated model says in `Mechanism` where it has functions in the vectors of a machine: for slopes, and with
+/// `lanes` for runs side by side, too. Nothing in test builds, half of which these functions would be: there
+/// [`RunByRun`](crate::model::dynamics::RunByRun) and [`EachAlone`](crate::model::dynamics::EachAlone) give the same.
+#[cfg(all(feature = "std", not(debug_assertions)))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __bond_graph_in_vectors {
+    () => {
+        fn slopes<V: $crate::__private::Slopes>(
+            &self,
+            values: &[$crate::__private::Vec<$crate::scalar::Gradient>],
+        ) -> ::core::option::Option<
+            ::core::result::Result<$crate::mechanism::SideBySide<V>, $crate::parameters::ParameterError>,
+        > {
+            ::core::option::Option::Some($crate::__private::join(self, values))
+        }
+    };
+    (lanes) => {
+        $crate::__bond_graph_in_vectors!();
+
+        fn lanes<V: $crate::__private::Vector>(
+            &self,
+            values: &[$crate::__private::Lanes<V>],
+        ) -> ::core::option::Option<
+            ::core::result::Result<
+                $crate::__private::Box<dyn $crate::__private::Abreast<V>>,
+                $crate::parameters::ParameterError,
+            >,
+        > {
+            ::core::option::Option::Some($crate::__private::into_lanes(self, values))
+        }
+    };
+}
+
+/// What a generated model says in `Mechanism` where it has functions in the vectors of a machine: nothing in such a
+/// build.
+#[cfg(not(all(feature = "std", not(debug_assertions))))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __bond_graph_in_vectors {
+    ($(lanes)?) => {};
+}
+
+/// A model that calculates in the vectors of a machine in each build: for tests of them.
+#[cfg(feature = "std")]
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct InEachBuild<Me>(pub Me);
 
 /// A model as studies of it ask for it: in doubles, of other values, and made anew in numbers with slopes.
 pub trait Differentiable {
@@ -163,20 +223,45 @@ pub struct SideBySide<V> {
     pub all: Box<dyn Rates<V>>,
 }
 
-/// A model whose slopes along many directions are calculated side by side, in the vectors `V`.
-#[doc(hidden)]
-pub trait Joinable<V>: Liftable<Gradient> {
-    /// The models with these values of the parameters, as many as have slopes in the vectors at most.
+impl<V> SideBySide<V> {
+    /// The models with these values of the parameters, each asked by itself.
     ///
     /// # Errors
     /// As [`Differentiable::tuned`].
-    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Result<SideBySide<V>, ParameterError>;
+    #[cfg(feature = "std")]
+    pub(crate) fn apart<Mo: Liftable<Gradient> + ?Sized>(
+        model: &Mo,
+        values: &[Vec<Gradient>],
+    ) -> Result<Self, ParameterError>
+    where
+        V: Slopes,
+    {
+        let each = values.iter().map(|values| model.lifted(values)).collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { all: Box::new(EachAlone(each.clone())), each })
+    }
+}
+
+/// A model whose slopes along many directions are calculated side by side, in the vectors `V`.
+#[doc(hidden)]
+pub trait Joinable<V>: Liftable<Gradient> {
+    /// The models with these values of the parameters, as many as have slopes in the vectors at most. None where it is
+    /// not compiled for these vectors: then each model is asked by itself.
+    ///
+    /// # Errors
+    /// As [`Differentiable::tuned`].
+    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Option<Result<SideBySide<V>, ParameterError>>;
 }
 
 impl<V: Slopes, Me: Mechanism> Joinable<V> for Me {
-    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Result<SideBySide<V>, ParameterError> {
-        self.visit_lifted::<Gradient, GradientIn<V>, _>(Join(values))
+    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Option<Result<SideBySide<V>, ParameterError>> {
+        self.slopes(values)
     }
+}
+
+/// The models of a mechanism with these values of its parameters, joined.
+#[doc(hidden)]
+pub fn join<V: Slopes, Me: Mechanism>(model: &Me, values: &[Vec<Gradient>]) -> Result<SideBySide<V>, ParameterError> {
+    model.visit_lifted::<Gradient, GradientIn<V>, _>(Join(values))
 }
 
 /// Makes models of values with slopes, and joins them.
@@ -210,10 +295,10 @@ impl<V: Slopes> LiftedVisitor<Gradient, GradientIn<V>> for Join<'_> {
 
 /// A model whose runs its slopes can follow, in the vectors of whatever machine is at hand.
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
-pub trait Followed: Joinable<Everywhere> + Joinable<Avx2> + Joinable<Avx512> {}
+pub trait Followed: Joinable<Avx2> + Joinable<Avx512> {}
 
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
-impl<Mo: Joinable<Everywhere> + Joinable<Avx2> + Joinable<Avx512>> Followed for Mo {}
+impl<Mo: Joinable<Avx2> + Joinable<Avx512>> Followed for Mo {}
 
 /// A model whose runs its slopes can follow, in the vectors of whatever machine is at hand.
 #[cfg(all(feature = "std", not(target_arch = "x86_64")))]
@@ -257,17 +342,76 @@ impl ModelVisitor<f64> for Sweeps {
 #[cfg(feature = "std")]
 #[doc(hidden)]
 pub trait Laned<V: Vector>: Differentiable {
-    /// It with these values of its parameters, those of each run in a place.
+    /// It with these values of its parameters, those of each run in a place. None where it is not compiled for these
+    /// vectors: then the model of each run is asked by itself.
     ///
     /// # Errors
     /// As [`Differentiable::tuned`].
-    fn in_lanes(&self, values: &[Lanes<V>]) -> Result<Box<dyn Abreast<V>>, ParameterError>;
+    fn in_lanes(&self, values: &[Lanes<V>]) -> Option<Result<Box<dyn Abreast<V>>, ParameterError>>;
 }
 
 #[cfg(feature = "std")]
 impl<V: Vector, Me: Mechanism> Laned<V> for Me {
-    fn in_lanes(&self, values: &[Lanes<V>]) -> Result<Box<dyn Abreast<V>>, ParameterError> {
-        self.visit_lifted::<Lanes<V>, Lanes<V>, _>(IntoLanes(values))
+    fn in_lanes(&self, values: &[Lanes<V>]) -> Option<Result<Box<dyn Abreast<V>>, ParameterError>> {
+        self.lanes(values)
+    }
+}
+
+/// A mechanism with these values of its parameters, in numbers side by side.
+#[cfg(feature = "std")]
+#[doc(hidden)]
+pub fn into_lanes<V: Vector, Me: Mechanism>(
+    model: &Me,
+    values: &[Lanes<V>],
+) -> Result<Box<dyn Abreast<V>>, ParameterError> {
+    model.visit_lifted::<Lanes<V>, Lanes<V>, _>(IntoLanes(values))
+}
+
+#[cfg(feature = "std")]
+impl<Me: Mechanism> Differentiable for InEachBuild<Me> {
+    fn description(&self) -> &'static Description {
+        self.0.description()
+    }
+
+    fn values(&self) -> Vec<f64> {
+        self.0.values()
+    }
+
+    fn inputs(&self) -> Vec<Input> {
+        Differentiable::inputs(&self.0)
+    }
+
+    fn machine(&self) -> Rc<dyn Machine> {
+        Differentiable::machine(&self.0)
+    }
+
+    fn tuned(&self, values: &[f64]) -> Result<Rc<dyn Machine>, ParameterError> {
+        self.0.tuned(values)
+    }
+
+    fn sloped(&self, inputs: &[Input]) -> Result<Rc<dyn Machine<Gradient>>, ParameterError> {
+        self.0.sloped(inputs)
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: Scalar, Me: Mechanism> Liftable<S> for InEachBuild<Me> {
+    fn lifted(&self, values: &[S]) -> Result<Rc<dyn Machine<S>>, ParameterError> {
+        self.0.lifted(values)
+    }
+}
+
+#[cfg(feature = "std")]
+impl<V: Slopes, Me: Mechanism> Joinable<V> for InEachBuild<Me> {
+    fn side_by_side(&self, values: &[Vec<Gradient>]) -> Option<Result<SideBySide<V>, ParameterError>> {
+        Some(join(&self.0, values))
+    }
+}
+
+#[cfg(feature = "std")]
+impl<V: Vector, Me: Mechanism> Laned<V> for InEachBuild<Me> {
+    fn in_lanes(&self, values: &[Lanes<V>]) -> Option<Result<Box<dyn Abreast<V>>, ParameterError>> {
+        Some(into_lanes(&self.0, values))
     }
 }
 

@@ -2,11 +2,14 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use crate::auto::{Swing, SwingParameters};
 use crate::problems::*;
-use bg_model::dynamics::Dynamics;
+use bg_model::capability::Elimination;
+use bg_model::dynamics::{Dynamics, Typed};
 use bg_model::failure::Cause;
 use bg_model::integrator::{self, Gauss6, Method, Point, Radau5, Radau9, Scale, Tolerances};
-use bg_model::nalgebra::{DVector, SVector};
+use bg_model::linear::Field;
+use bg_model::nalgebra::{Complex, DVector, SVector};
 use bg_model::simulation::{Samples, Settings, Span, integrate};
 use bg_model::statistics::Statistics;
 use bg_model::system::values;
@@ -306,4 +309,33 @@ fn a_fixed_step_that_does_not_converge_fails_at_once() {
     let failure = integrate(&system, &mut Gauss6::new(0.4), &SVector::from([1.0]), span, &settings(1e-9), &mut ());
     let failure = failure.unwrap_err();
     assert!(failure.last.t < 1.0 && failure.last.statistics.rejected == 1, "{failure}");
+}
+
+/// The solution of (I - c J) y = b by the unrolled elimination and by the one in little code.
+fn both_ways<F: Field<f64>, const N: usize>(model: &impl Elimination<f64, N>, c: F, entries: &[f64]) -> [[F; N]; 2] {
+    let right = std::array::from_fn(|row| F::real(0.3 + row as f64));
+    let mut factors = vec![F::real(f64::NAN); model.factors()];
+    let [mut unrolled, mut compact] = [right; 2];
+    assert!(model.eliminate(c, entries, &mut factors));
+    model.substitute(&factors, &mut unrolled);
+    factors.fill(F::real(f64::NAN));
+    assert!(model.eliminate_compactly(c, entries, &mut factors));
+    model.substitute_compactly(&factors, &mut compact);
+    [unrolled, compact]
+}
+
+#[test]
+fn eliminations_in_little_code_have_the_bits_of_unrolled_ones() {
+    let model = Swing::new(SwingParameters::default()).unwrap();
+    let over = Typed::model(&model);
+    let (x, n) = ([0.3, -0.2, 0.7, -1.1], over.states());
+    let (mut entries, mut slope) = (vec![f64::NAN; over.sparsity().len(n)], vec![f64::NAN; n]);
+    over.jacobian(0.0, &x[..n], &[], &mut entries, &mut slope);
+    for c in [1e-3, 0.2, 7.0] {
+        let [unrolled, compact] = both_ways(&model, c, &entries);
+        assert_eq!(unrolled.map(f64::to_bits), compact.map(f64::to_bits), "c = {c}");
+        let bits = |of: [Complex<f64>; 4]| of.map(|of| [of.re.to_bits(), of.im.to_bits()]);
+        let [unrolled, compact] = both_ways(&model, Complex::new(c, 0.4 * c), &entries).map(bits);
+        assert_eq!(unrolled, compact, "c = {c}");
+    }
 }

@@ -6,7 +6,7 @@ mod adjoint;
 use bg_model::bond_graph;
 use bg_model::extended::Accuracy;
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::Mechanism;
+use bg_model::mechanism::{InEachBuild, Mechanism};
 use bg_model::parameters::Parameters;
 use bg_model::run::Request;
 use bg_model::scalar::{Dual, Scalar};
@@ -122,6 +122,11 @@ fn request(t: f64, method: Integrator) -> Request {
 fn deviation<Me: Mechanism>(model: &Me, t: f64, method: Integrator) -> (f64, u64) {
     let directions = Direction::parameters::<Me>();
     let found = sensitivities(model, &request(t, method), &directions).expect("derivatives");
+    let in_vectors = sensitivities(&InEachBuild(model.clone()), &request(t, method), &directions).expect("derivatives");
+    for (k, output) in (0..directions.len()).flat_map(|k| (0..Me::describe().outputs.len()).map(move |of| (k, of))) {
+        let [of_each, of_all] = [&found, &in_vectors].map(|found| found.of(k, output)[0].to_bits());
+        assert_eq!(of_each, of_all, "output {output} by parameter {k}");
+    }
     let values: Vec<f64> = (0..directions.len()).map(|k| model.parameters().value(k)).collect();
     let mut worst = 0.0_f64;
     let accuracy = Accuracy { columns: 8, tolerance: 1e-20 };

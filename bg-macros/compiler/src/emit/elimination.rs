@@ -1,7 +1,7 @@
 //! Factorisation and solution of I - c J as tokens.
 //!
-//! In: an [`Elimination`]. Out: the bodies of `eliminate` and `substitute`, generic over a scalar `S` and a field `F`:
-//! one `let` for each step over arrays of fixed size, or, for long ones, tables of the steps.
+//! In: an [`Elimination`]. Out: the bodies of functions that do it, generic over a scalar `S` and a field `F`: one `let`
+//! for each step over arrays of fixed size, or tables of the steps.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -15,7 +15,7 @@ fn value(slot: usize) -> Ident {
     format_ident!("a{slot}")
 }
 
-/// Longer factorisations are tables. rustc's time for unrolled complex ones grows faster than their length: 0.5 s for
+/// Longer factorisations are tables alone. rustc's time for unrolled complex ones grows faster than their length: 0.5 s for
 /// 600 steps, 80 s for 9400.
 const UNROLLED: usize = 2000;
 
@@ -23,11 +23,8 @@ pub(super) fn is_unrolled(elimination: &Elimination) -> bool {
     elimination.factorisation.len() <= UNROLLED
 }
 
-/// The body of `eliminate(c, entries, factors)`; `entries` and `factors` are arrays.
+/// The unrolled body of `eliminate(c, entries, factors)`; `entries` and `factors` are arrays.
 pub(super) fn factorisation(elimination: &Elimination) -> TokenStream {
-    if !is_unrolled(elimination) {
-        return factorisation_table(elimination);
-    }
     let steps = elimination.factorisation.iter().map(step);
     let values = (0..elimination.slots).map(value);
     quote! {
@@ -83,11 +80,8 @@ fn step(step: &Step) -> TokenStream {
     }
 }
 
-/// The body of `substitute(factors, b)`; `factors` and `b`, of `n` states, are arrays.
+/// The unrolled body of `substitute(factors, b)`; `factors` and `b`, of `n` states, are arrays.
 pub(super) fn substitution(elimination: &Elimination, n: usize) -> TokenStream {
-    if !is_unrolled(elimination) {
-        return substitution_table(elimination, n);
-    }
     let component = |row: usize| format_ident!("b{row}");
     let components: Vec<Ident> = (0..elimination.order.len()).map(component).collect();
     let steps = elimination.substitution.iter().map(|step| match *step {
@@ -109,7 +103,8 @@ pub(super) fn substitution(elimination: &Elimination, n: usize) -> TokenStream {
     }
 }
 
-fn factorisation_table(elimination: &Elimination) -> TokenStream {
+/// The same as [`factorisation`] by tables.
+pub(super) fn factorisation_table(elimination: &Elimination) -> TokenStream {
     let EliminationTable { slots, products, .. } = tables::elimination(elimination);
     let slots = slots.iter().map(|slot| format!("{slot:?}")).collect::<Vec<_>>().join(", ");
     let products = products.iter().map(|product| format!("{product:?}")).collect::<Vec<_>>().join(", ");
@@ -122,7 +117,8 @@ fn factorisation_table(elimination: &Elimination) -> TokenStream {
     }
 }
 
-fn substitution_table(elimination: &Elimination, n: usize) -> TokenStream {
+/// The same as [`substitution`] by tables.
+pub(super) fn substitution_table(elimination: &Elimination, n: usize) -> TokenStream {
     let EliminationTable { steps, rows, .. } = tables::elimination(elimination);
     let steps = parsed(&steps.iter().map(|step| format!("{step:?}")).collect::<Vec<_>>().join(", "));
     let whole = (rows > n).then(|| {

@@ -64,7 +64,8 @@ fn of_model(Promised { graph, scene }: Promised<'_>) -> TokenStream {
         pub struct #name<#scalar = ::core::primitive::f64> { #fields scalar: ::core::marker::PhantomData<#scalar> }
     };
     let fields: Vec<_> = inputs.iter().map(|input| identifier(&input.name.text)).collect();
-    let (mechanism, count) = (mechanism::of(&fields, &quote!(::core::unreachable!("{WHY}"))), parameters.len());
+    let (mechanism, count) =
+        (mechanism::of(&fields, &quote!(::core::unreachable!("{WHY}")), &TokenStream::new()), parameters.len());
     let code = quote! {
         use ::bg_model::scalar::Scalar;
         use ::bg_model::nalgebra::SVector;

@@ -4,8 +4,11 @@
 //! In: a [`System`] or [`Model`] whose numbers are in its type. Out: the same as one table of functions, [`Dynamics`]
 //! and [`Machine`]: [`Typed`] in `f64`, where rates, series and eliminations are compiled for the vectors of the
 //! machine at hand; [`Over`] in any scalar; [`InVectors`] for slopes in vectors; [`InLanes`] for runs side by side;
-//! [`Swept`], its reverse sweeps.
+//! [`EachAlone`] and [`RunByRun`] in their places where a model is not compiled for vectors; [`Swept`], its reverse
+//! sweeps.
 
+#[cfg(feature = "std")]
+mod apart;
 #[cfg(feature = "std")]
 mod lanes;
 mod over;
@@ -35,6 +38,8 @@ use crate::model::scalar::Scalar;
 #[cfg(doc)]
 use crate::model::system::System;
 use crate::model::system::{Model, Powers, decide_by_sign};
+#[cfg(feature = "std")]
+pub use apart::{EachAlone, RunByRun};
 #[cfg(feature = "std")]
 pub use lanes::{Abreast, InLanes};
 pub use over::Over;

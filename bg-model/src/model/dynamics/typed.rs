@@ -69,14 +69,15 @@ where
     }
 
     fn eliminated<F: Field<f64>>(&self, c: F, entries: &[f64], factors: &mut [F]) -> bool {
-        let in_vectors = |elimination| self.arch.dispatch(Eliminate { elimination, c, entries, factors });
-        self.elimination().is_some_and(in_vectors)
+        let made =
+            |elimination| self.arch.dispatch_or(Eliminate { elimination, c, entries, factors }, Eliminate::compactly);
+        self.elimination().is_some_and(made)
     }
 
     fn substituted<F: Field<f64>>(&self, factors: &[F], b: &mut [F]) {
         if let Some(elimination) = self.elimination() {
             let b = b.first_chunk_mut().expect("there is a number for each state");
-            self.arch.dispatch(Substitute { elimination, factors, b });
+            self.arch.dispatch_or(Substitute { elimination, factors, b }, Substitute::compactly);
         }
     }
 }
@@ -349,6 +350,12 @@ impl<E: Elimination<f64, N>, F: Field<f64>, const N: usize> NullaryFnOnce for El
     }
 }
 
+impl<E: Elimination<f64, N>, F: Field<f64>, const N: usize> Eliminate<'_, E, F, N> {
+    fn compactly(self) -> bool {
+        self.elimination.eliminate_compactly(self.c, self.entries, self.factors)
+    }
+}
+
 struct Substitute<'a, E, F, const N: usize> {
     elimination: &'a E,
     factors: &'a [F],
@@ -361,6 +368,12 @@ impl<E: Elimination<f64, N>, F: Field<f64>, const N: usize> NullaryFnOnce for Su
     #[inline(always)]
     fn call(self) {
         self.elimination.substitute(self.factors, self.b);
+    }
+}
+
+impl<E: Elimination<f64, N>, F: Field<f64>, const N: usize> Substitute<'_, E, F, N> {
+    fn compactly(self) {
+        self.elimination.substitute_compactly(self.factors, self.b);
     }
 }
 

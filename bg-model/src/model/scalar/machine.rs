@@ -37,4 +37,21 @@ impl Arch {
             Self::V3(machine) => machine.vectorize(of),
         }
     }
+
+    /// The same for what is long, on machines of a kind of which nearly all have vectors: `of` is compiled for these
+    /// alone, and those without do `elsewhere`, which gives the same.
+    #[inline(always)]
+    pub fn dispatch_or<F: NullaryFnOnce>(self, of: F, elsewhere: impl FnOnce(F) -> F::Output) -> F::Output {
+        match self {
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
+            Self::Scalar => elsewhere(of),
+            #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
+            Self::Scalar => {
+                let _ = elsewhere;
+                of.call()
+            }
+            #[cfg(all(feature = "std", target_arch = "x86_64"))]
+            Self::V3(machine) => machine.vectorize(of),
+        }
+    }
 }

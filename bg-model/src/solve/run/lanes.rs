@@ -10,12 +10,12 @@ use thiserror::Error;
 
 use super::stopwatch::Stopwatch;
 use super::{Made, Reason, Request, RunError, Simulation, Trajectory, observer, recorded};
-use crate::model::dynamics::{Abreast, Machine};
+use crate::model::dynamics::{Abreast, Machine, RunByRun};
 use crate::model::mechanism::Accompanied;
 use crate::model::parameters::ParameterError;
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::lanes::{Avx2, Avx512};
-use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::model::scalar::lanes::{Lanes, Vector, at};
 #[cfg(target_arch = "x86_64")]
 use crate::model::scalar::slopes::Slopes;
 use crate::solve::integrator::{AnyInLanes, AnyMethod, Change, Method};
@@ -82,7 +82,7 @@ impl Many<'_> {
     /// The runs side by side, as far as that is possible, in vectors in which `lifted` makes the model.
     fn together<V: Vector>(
         &self,
-        lifted: impl Fn(&[Lanes<V>]) -> Result<Box<dyn Abreast<V>>, ParameterError>,
+        lifted: impl Fn(&[Lanes<V>]) -> Option<Result<Box<dyn Abreast<V>>, ParameterError>>,
     ) -> Vec<Result<Trajectory, LaneError>> {
         let settings = self.request.settings(0.0);
         let method: AnyMethod = self.request.method();
@@ -112,7 +112,13 @@ impl Many<'_> {
             Some(lanes::Job { number, model, values, method, start, observer })
         });
         let mut finished: Vec<_> = self.values.iter().map(|_| None).collect();
-        let pack = |values: &[Lanes<V>]| lifted(values).expect("models were made of these parameters");
+        let apart = |values: &[Lanes<V>]| -> Result<Box<dyn Abreast<V>>, ParameterError> {
+            let models = (0..V::LANES).map(|place| self.model.tuned(&at(place, values)));
+            Ok(Box::new(RunByRun(models.collect::<Result<_, _>>()?)))
+        };
+        let pack = |values: &[Lanes<V>]| {
+            lifted(values).unwrap_or_else(|| apart(values)).expect("models were made of these parameters")
+        };
         lanes::integrate(jobs, together, pack, span, &settings, sizes, &mut |number, observers, finish| {
             finished[number] = finish.map(|finish| (recorded(observers), finish));
         });

@@ -45,7 +45,7 @@ use thiserror::Error;
 use crate::model::assembly::AssemblyError;
 use crate::model::description::Description;
 use crate::model::dynamics::Machine;
-use crate::model::mechanism::{Followed, Joinable, Mechanism, SideBySide};
+use crate::model::mechanism::{Followed, Mechanism, SideBySide};
 use crate::model::parameters::{ParameterError, Parameters};
 use crate::model::scalar::Gradient;
 #[cfg(target_arch = "x86_64")]
@@ -264,14 +264,14 @@ pub fn sensitivities_of(
     // What has no more directions than fit into a vector of AVX2 gains nothing by wider ones.
     #[cfg(target_arch = "x86_64")]
     if directions.len() > Avx2::LANES && Avx512::is_at_hand() {
-        return following.followed::<Avx512, _>(model);
+        return following.followed::<Avx512>(model, |values| model.side_by_side(values));
     } else if Avx2::is_at_hand() {
-        return following.followed::<Avx2, _>(model);
+        return following.followed::<Avx2>(model, |values| model.side_by_side(values));
     }
     #[cfg(target_arch = "x86_64")]
-    return following.followed::<Everywhere, _>(model);
+    return following.followed::<Everywhere>(model, |_| None);
     #[cfg(not(target_arch = "x86_64"))]
-    following.followed::<Eight, _>(model)
+    following.followed::<Eight>(model, |values| model.side_by_side(values))
 }
 
 /// What is done with the model.
@@ -286,13 +286,18 @@ struct Following<'a> {
 
 impl Following<'_> {
     /// Makes the run, followed along as many directions at a time as the vectors `V` have places.
-    fn followed<V: Slopes, Mo: Joinable<V> + ?Sized>(&self, model: &Mo) -> Result<Sensitivities, SensitivityError> {
+    fn followed<V: Slopes>(
+        &self,
+        model: &dyn Followed,
+        side_by_side: impl Fn(&[Vec<Gradient>]) -> Option<Result<SideBySide<V>, ParameterError>>,
+    ) -> Result<Sensitivities, SensitivityError> {
         let start = self.plain.start()?;
         let scale = Scale::new(&self.request.tolerances(), start.len());
         let is_estimated = self.request.method != Integrator::Dop853;
         let follower = |directions: &[Direction]| -> Result<Follower, SensitivityError> {
             let values: Vec<_> = directions.chunks(WIDTH).map(|few| sloped(self.values, few)).collect();
-            let SideBySide { each, all } = model.side_by_side(&values)?;
+            let SideBySide { each, all } =
+                side_by_side(&values).unwrap_or_else(|| SideBySide::apart(model, &values))?;
             let sizes: Vec<f64> = directions.iter().map(|&of| self.size(of, &start)).collect();
             let steps = Stepper::<V>::new(all, start.len(), is_estimated, (scale.clone(), &sizes));
             let plain = model.lifted(&sloped(self.values, &[]))?;

@@ -3,11 +3,13 @@
 //! In: the program of the derivatives, the planned elimination. Out: `Linearised` and `Elimination` for the model.
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::{ToTokens, format_ident, quote};
 
 use super::super::elimination;
+use super::super::items::identifier;
 use super::super::routine::parsed;
 use super::capabilities::accessor;
+use super::system::Inlined;
 use super::{Emission, Shape};
 use crate::tables::{self, Tables};
 
@@ -80,35 +82,47 @@ impl Emission<'_> {
         })
     }
 
+    /// Unrolled, for the vectors that a step may take; by tables where that is too long, and for machines without AVX2
+    /// where nearly all have it: this takes much less to compile.
     fn elimination(&self) -> TokenStream {
         let n = &self.shape.n;
         let plan = &self.model.elimination;
         let (count, slots) = (self.model.jacobian.entries.len(), plan.slots);
-        let (factorisation, substitution) =
-            (elimination::factorisation(plan), elimination::substitution(plan, self.model.equations.states.len()));
-        // Unrolled, it is compiled for each of the vectors that a step may take; a table of steps gains nothing by
-        // that.
-        let inline = if elimination::is_unrolled(plan) {
-            quote!(#[cfg_attr(not(debug_assertions), inline(always))])
+        let states = self.model.equations.states.len();
+        // The names of both functions, their attribute and their bodies.
+        let functions = |names: [&str; 2], inline: TokenStream, bodies: [TokenStream; 2]| {
+            let ([eliminate, substitute], [factorisation, substitution]) = (names.map(identifier), bodies);
+            quote! {
+                #inline
+                fn #eliminate<F: ::bg_model::linear::Field<S>>(&self, c: F, entries: &[S], factors: &mut [F]) -> bool {
+                    let entries: &[S; #count] = entries.try_into().expect("one entry for each place");
+                    let factors: &mut [F; #slots] = factors.try_into().expect("as many factors as are eliminated");
+                    #factorisation
+                }
+                #inline
+                fn #substitute<F: ::bg_model::linear::Field<S>>(&self, factors: &[F], b: &mut [F; #n]) {
+                    let factors: &[F; #slots] = factors.try_into().expect("as many factors as are eliminated");
+                    #substitution
+                }
+            }
+        };
+        let names = ["eliminate", "substitute"];
+        let tables = [elimination::factorisation_table(plan), elimination::substitution_table(plan, states)];
+        let called = quote!(#[inline(never)]);
+        let functions = if elimination::is_unrolled(plan) {
+            let unrolled = [elimination::factorisation(plan), elimination::substitution(plan, states)];
+            let unrolled = functions(names, Inlined.to_token_stream(), unrolled);
+            let compact = functions(["eliminate_compactly", "substitute_compactly"], called, tables);
+            quote!(#unrolled #compact)
         } else {
-            quote!(#[inline(never)])
+            functions(names, called, tables)
         };
         quote! {
             impl<S: Scalar> ::bg_model::capability::Elimination<S, #n> for Model<S> {
                 fn factors(&self) -> usize {
                     #slots
                 }
-                #inline
-                fn eliminate<F: ::bg_model::linear::Field<S>>(&self, c: F, entries: &[S], factors: &mut [F]) -> bool {
-                    let entries: &[S; #count] = entries.try_into().expect("one entry for each place");
-                    let factors: &mut [F; #slots] = factors.try_into().expect("as many factors as are eliminated");
-                    #factorisation
-                }
-                #inline
-                fn substitute<F: ::bg_model::linear::Field<S>>(&self, factors: &[F], b: &mut [F; #n]) {
-                    let factors: &[F; #slots] = factors.try_into().expect("as many factors as are eliminated");
-                    #substitution
-                }
+                #functions
             }
         }
     }

@@ -13,12 +13,16 @@ impl Emission<'_> {
     pub(super) fn mechanism(&self) -> TokenStream {
         let inputs = &self.model.derived.causal.graph.inputs;
         let inputs: Vec<_> = inputs.iter().map(|input| identifier(&input.name.text)).collect();
-        of(&inputs, &quote!(&DESCRIPTION))
+        let lanes = self.may_run_in_lanes().then(|| quote!(lanes));
+        // Blocks are not inlined into what is compiled for vectors: each operation in them would be a call.
+        let is_inlined = !self.model.programs.running.rate.is_long();
+        let in_vectors = is_inlined.then(|| quote!(::bg_model::__private::in_vectors! { #lanes }));
+        of(&inputs, &quote!(&DESCRIPTION), &in_vectors.unwrap_or_default())
     }
 }
 
-/// The implementation for a model with these inputs and this description.
-pub(in super::super) fn of(inputs: &[Ident], description: &TokenStream) -> TokenStream {
+/// The implementation for a model with these inputs, this description and functions in the vectors of machines.
+pub(in super::super) fn of(inputs: &[Ident], description: &TokenStream, in_vectors: &TokenStream) -> TokenStream {
     let places = (0..inputs.len()).map(Literal::usize_unsuffixed);
     let has_inputs = !inputs.is_empty();
     let made = has_inputs.then(|| quote!(, Inputs { #(#inputs: inputs.get(#places).cloned().unwrap_or_default(),)* }));
@@ -55,6 +59,7 @@ pub(in super::super) fn of(inputs: &[Ident], description: &TokenStream) -> Token
                     Model::<S>::joined,
                 )
             }
+            #in_vectors
         }
     }
 }

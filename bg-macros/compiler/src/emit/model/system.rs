@@ -223,8 +223,8 @@ impl Emission<'_> {
     /// are.
     fn runs_in_lanes(&self) -> Option<TokenStream> {
         let inputs = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect::<Vec<_>>();
-        let is_alone = self.model.equations.found() > 0 || self.inline().is_none() || !self.tables.turning.is_empty();
-        let answer = if is_alone { quote!(false) } else { quote!(#(self.inputs.#inputs.is_constant())&&*) };
+        let constant = quote!(#(self.inputs.#inputs.is_constant())&&*);
+        let answer = if self.may_run_in_lanes() { constant } else { quote!(false) };
         (!answer.is_empty()).then(|| {
             quote! {
                 fn runs_in_lanes(&self) -> bool {
@@ -232,6 +232,11 @@ impl Emission<'_> {
                 }
             }
         })
+    }
+
+    /// Whether there are inputs with which it runs in lanes.
+    pub(super) fn may_run_in_lanes(&self) -> bool {
+        self.model.equations.found() == 0 && self.inline().is_some() && self.tables.turning.is_empty()
     }
 
     /// What switches are called.
