@@ -53,7 +53,6 @@ bond_graph! {
             stiffness stiffness; damping 100; tilt stiffness 1e3; tilt damping 1;
         }
         observe { angle: rad = rod.angle; pin.force; pull: N = norm(pin.force); lost: J = integral(dissipated_power) }
-        scenes only;
         /// In the plane.
         scene Swing {
             observe { angle: rad = rod.angle; force: N = pin.force.y }
