@@ -54,8 +54,8 @@ bond_graph! {
             force: N = /*pin in observe*/pin./*force*/force.x;
             /*left in observe*/left./*way in observe*/way;
             /*pair in observe*/pair./*torque in observe*/torque;
-            left_over: N*m = /*curve in observe*/curve(/*abs*/abs(pin.speed)) * /*sin*/sin(/*t*/t / 1 s);
-            slope: N*m*s/rad = /*curve again in observe*/curve./*derivative*/derivative(/*delay*/delay(pin.speed, 20 ms));
+            left_over: N*m = /*curve in observe*/curve(/*abs*/abs(hub.flow)) * /*sin*/sin(/*t*/t / 1 s);
+            slope: N*m*s/rad = /*curve again in observe*/curve./*derivative*/derivative(/*delay*/delay(hub.flow, 20 ms));
             high: m = /*row in observe*/row[1]./*foot in observe*/foot./*tip in observe*/tip.position.y;
         }
 

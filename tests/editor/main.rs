@@ -197,6 +197,6 @@ fn offered(editor: &mut Editor) {
         // Functions are offered wherever names are.
         let is_other = |label: &&&str| !words.contains(label) && functions::named(label).is_none();
         let others = labels.iter().filter(is_other).count();
-        assert!(others == 0 || ["rod.|)", "fr|", "st|;"].contains(&new), "`{new}` offers {labels:?}");
+        assert!(others == 0 || ["rod.|)", "fr|", "st|;", "si|("].contains(&new), "`{new}` offers {labels:?}");
     }
 }

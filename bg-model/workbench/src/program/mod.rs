@@ -2,6 +2,7 @@
 
 pub mod case;
 
+#[cfg(not(target_arch = "wasm32"))]
 use std::path::Path;
 
 use bg_model::description::Description;
@@ -23,6 +24,7 @@ impl Texts {
     }
 
     /// What a report is called: as the file with the models, else as the program.
+    #[cfg(not(target_arch = "wasm32"))]
     pub fn stem(&self) -> &str {
         let of_file = self.file.as_deref().and_then(|file| Path::new(file).file_stem()?.to_str());
         of_file.unwrap_or(&self.name)
