@@ -59,7 +59,7 @@ fn double_pendulum(t_end: f64) -> (Trajectory, Vec<f64>, String) {
     let modes = Some(Ok(modes));
     let views = Views { animation, picture: Some(machine::picture(&run.times)), modes };
     let description = DoublePendulum::describe();
-    let html = written(&run, &rows, &Plain.page(description), description, &views);
+    let html = written(&run, &rows, &Plain.page(description.name, description), description, &views);
     (run, rows, html)
 }
 
@@ -161,7 +161,7 @@ fn no_text_breaks_the_page() {
         Box::leak(Box::new(Description { name: EVIL, doc: EVIL, equations: &[EVIL], ..usual.clone() }))
     };
     let views = Views { animation: Some(animation), ..Views::default() };
-    let texts = Page { gallery: EVIL.to_owned(), about_gallery: EVIL.to_owned(), ..Plain.page(evil) };
+    let texts = Page { gallery: EVIL.to_owned(), about_gallery: EVIL.to_owned(), ..Plain.page(evil.name, evil) };
     let html = written(&run, &rows, &texts, evil, &views);
     let usual = double_pendulum(0.1).2;
     assert_eq!(html.matches("</script").count(), usual.matches("</script").count());
