@@ -5,11 +5,13 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use bg_model::integrator::Integrator;
 use bg_model::nalgebra::DMatrix;
 use bg_workbench::Program;
 use bg_workbench::calls::{self, Asked, Ran, Started};
 use bg_workbench::files::head::name_and_unit;
 use bg_workbench::files::parquet;
+use bg_workbench::hint;
 use bg_workbench::inputs::Named;
 use bg_workbench::optimize;
 use bg_workbench::sweep::folder::{Folder, Kind};
@@ -124,6 +126,7 @@ fn integrated(
     t_end: Option<f64>,
     step: Option<f64>,
     method: Option<&str>,
+    hint: Option<PathBuf>,
     rtol: Option<f64>,
     atol: Option<f64>,
 ) -> PyResult<()> {
@@ -134,6 +137,10 @@ fn integrated(
     integration.atol = atol;
     if let Some(method) = method {
         integration.method = method.parse().map_err(|fault| PyValueError::new_err(format!("method: {fault}")))?;
+    }
+    if let Some(hint) = hint {
+        let read = hint::read(&hint.to_string_lossy());
+        integration.hint = Some(read.map_err(|fault| PyValueError::new_err(format!("hint {hint:?}: {fault}")))?);
     }
     Ok(())
 }
@@ -157,10 +164,12 @@ impl Model {
     /// Run the model; parameters are keyword arguments, inputs numbers or names of CSV files.
     ///
     /// Gives a table with the time `t` in s every `step` s until `t_end` s, and all outputs of the scene. `set` takes
-    /// parameters whose names are no Python names. `info["inputs"]` has of each input its `unit`, whether it was given,
-    /// and its `value` or the `table` that it follows: file, CRC-32, rows, first and last row. Raises ValueError where
-    /// something cannot be, RunFailed where the run stops before its end.
-    #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, rtol=None, atol=None, fixed_step=None, start="model", inputs=None, set=None, **parameters))]
+    /// parameters whose names are no Python names. `hint` is what `auto` begins with: a method's name, the
+    /// `info["hint"]` of a run like this, which is the method that made most of it, or a `summary.json`.
+    /// `info["inputs"]` has of each input its `unit`, whether it was given, and its `value` or the `table` that it
+    /// follows: file, CRC-32, rows, first and last row. Raises ValueError where something cannot be, RunFailed where
+    /// the run stops before its end.
+    #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, fixed_step=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn run(
         &self,
@@ -169,6 +178,7 @@ impl Model {
         t_end: Option<f64>,
         step: Option<f64>,
         method: Option<&str>,
+        hint: Option<PathBuf>,
         rtol: Option<f64>,
         atol: Option<f64>,
         fixed_step: Option<f64>,
@@ -178,7 +188,7 @@ impl Model {
         parameters: Option<BTreeMap<String, f64>>,
     ) -> PyResult<Table> {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
-        integrated(&mut asked, t_end, step, method, rtol, atol)?;
+        integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
         let mut ran = interruptible(py, |_| calls::run(&(self.program)(), &asked))?.map_err(refused)?;
         let failure = ran.failure.take();
@@ -198,7 +208,7 @@ impl Model {
     ///
     /// `others` are CSV files of other runs or measurements, drawn beside it. Gives a picture, which a notebook shows:
     /// its SVG is `svg`, and `save(path)` writes it. Raises ValueError where it cannot be drawn.
-    #[pyo3(signature = (picture, scene=None, *, others=None, t_end=None, step=None, method=None, rtol=None, atol=None, start="model", inputs=None, set=None, **parameters))]
+    #[pyo3(signature = (picture, scene=None, *, others=None, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn plot(
         &self,
@@ -209,6 +219,7 @@ impl Model {
         t_end: Option<f64>,
         step: Option<f64>,
         method: Option<&str>,
+        hint: Option<PathBuf>,
         rtol: Option<f64>,
         atol: Option<f64>,
         start: &str,
@@ -217,7 +228,7 @@ impl Model {
         parameters: Option<BTreeMap<String, f64>>,
     ) -> PyResult<Picture> {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
-        integrated(&mut asked, t_end, step, method, rtol, atol)?;
+        integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         let others = others.unwrap_or_default();
         let svg = interruptible(py, |_| calls::plot(&(self.program)(), &asked, picture, &others))?.map_err(refused)?;
         Ok(Picture { svg })
@@ -288,7 +299,7 @@ impl Model {
     /// Gives a table with the time `t` in s and a column `d(output)/d(parameter)` for each of the `outputs` and each
     /// parameter in `by`; without them for all outputs, by all parameters of the scene. Raises ValueError where
     /// something cannot be.
-    #[pyo3(signature = (scene=None, *, by=None, outputs=None, t_end=None, step=None, method=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
+    #[pyo3(signature = (scene=None, *, by=None, outputs=None, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn sensitivity(
         &self,
@@ -299,6 +310,7 @@ impl Model {
         t_end: Option<f64>,
         step: Option<f64>,
         method: Option<&str>,
+        hint: Option<PathBuf>,
         rtol: Option<f64>,
         atol: Option<f64>,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
@@ -306,7 +318,7 @@ impl Model {
         parameters: Option<BTreeMap<String, f64>>,
     ) -> PyResult<Table> {
         let mut asked = asked(scene, set, inputs, "model", parameters)?;
-        integrated(&mut asked, t_end, step, method, rtol, atol)?;
+        integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         let (by, outputs) = (by.unwrap_or_default(), outputs.unwrap_or_default());
         let found = interruptible(py, |_| calls::sensitivity(&(self.program)(), &asked, &by, &outputs))?;
         let (ran, courses) = found.map_err(refused)?;
@@ -322,7 +334,7 @@ impl Model {
     /// "mean(speed) > 30"; `by` are names, each with bounds where they are narrower, "length=0.5..0.9". Two goals give
     /// their front in `points`. Gives a dict: `best`, `searches` and `front`, each with `parameters`, `goals`, `subjects`,
     /// `feasible`, `converged`, `end`; `trials`, a table of all runs. Raises ValueError where nothing can be sought.
-    #[pyo3(signature = (scene=None, *, minimize=None, maximize=None, subject=None, by=None, starts=1, points=9, steps=50, threads=0, t_end=None, step=None, method=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
+    #[pyo3(signature = (scene=None, *, minimize=None, maximize=None, subject=None, by=None, starts=1, points=9, steps=50, threads=0, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn optimize<'py>(
         &self,
@@ -339,6 +351,7 @@ impl Model {
         t_end: Option<f64>,
         step: Option<f64>,
         method: Option<&str>,
+        hint: Option<PathBuf>,
         rtol: Option<f64>,
         atol: Option<f64>,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
@@ -346,7 +359,7 @@ impl Model {
         parameters: Option<BTreeMap<String, f64>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut asked = asked(scene, set, inputs, "model", parameters)?;
-        integrated(&mut asked, t_end, step, method, rtol, atol)?;
+        integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         let [minimize, maximize, subject, by] =
             [minimize, maximize, subject, by].map(|texts| texts.map_or_else(Vec::new, Texts::all));
         let goals = optimize::Asked { minimize, maximize, subject, by, starts, points, steps, threads };
@@ -520,6 +533,7 @@ fn about_run<'py>(py: Python<'py>, Ran { run, inputs, .. }: &Ran) -> PyResult<Bo
     info.set_item("inputs", named(py, inputs)?)?;
     let statistics = &run.statistics;
     info.set_item("methods", PyList::new(py, run.methods.iter().map(|change| (change.t, change.method)))?)?;
+    info.set_item("hint", run.hint().map(Integrator::name))?;
     info.set_item("rtol", run.request.rtol)?;
     info.set_item("atol", run.request.atol)?;
     info.set_item("steps", statistics.steps)?;

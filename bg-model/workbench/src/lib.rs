@@ -93,6 +93,8 @@ mod run;
 mod show;
 mod studies;
 
+#[cfg(not(target_arch = "wasm32"))]
+pub use ask::hint;
 pub use ask::{compiled, inputs, machine, maker, parameters, request, scenes, table_file};
 pub use bg_analysis::linear;
 #[cfg(not(target_arch = "wasm32"))]

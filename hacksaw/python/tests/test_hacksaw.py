@@ -25,6 +25,14 @@ def test_a_run_gives_columns_as_arrays():
         r["none"]
 
 
+def test_a_run_begins_with_what_made_another_one():
+    first = hacksaw.run("motion", rtol=1e-4, **SHORT)
+    run = hacksaw.run("motion", rtol=1e-4, hint="nystrom", **SHORT)
+    assert run.info["hint"] == "nystrom" != first.info["hint"] and not np.array_equal(run["C4_x"], first["C4_x"])
+    again = hacksaw.run("motion", rtol=1e-4, hint=run.info["hint"], **SHORT)
+    assert np.array_equal(again["C4_x"], run["C4_x"])
+
+
 def test_columns_are_not_copied():
     r = hacksaw.run("motion", **SHORT)
     # The array is over memory that the run filled, and the same one each time.
@@ -47,6 +55,7 @@ def test_parameters_change_the_run_and_have_units_and_ranges():
         ({"scene": "nothing"}, "there is no scene `nothing`; there are "),
         ({"t_end": -1}, "t_end -1: must be a finite number above 0"),
         ({"method": "euler"}, "method: there is no integrator `euler`"),
+        ({"hint": "best"}, 'hint "best": give one of dop853, cfmr7, nystrom, taylor, ark5, radau9, or the summary.json'),
         ({"start": "there"}, 'start "there": give "model" or "equilibrium"'),
         ({"inputs": {"force": 3}}, "there is no input `force`"),
     ],

@@ -36,6 +36,22 @@ def test_parameters_are_keyword_arguments():
         swing.run(mass=-1)
 
 
+def test_a_run_begins_with_what_made_another_one(tmp_path: pathlib.Path):
+    swing = bg.compile(SWING)
+    assert swing.run(t_end=1).info["hint"] == "dop853"
+    run = swing.run(t_end=1, hint="radau9")
+    assert run.info["methods"][0][1] == "Radau IIA 9" and run.info["hint"] == "radau9"
+    (tmp_path / "summary.json").write_text('{"hint": "radau9"}')
+    for hint in (run.info["hint"], tmp_path / "summary.json"):
+        again = swing.run(t_end=1, hint=hint)
+        assert np.array_equal(again["x"], run["x"]) and not np.array_equal(again["x"], swing.run(t_end=1)["x"])
+    # After a method by name there is none, and none is what `hint` is without one.
+    assert swing.run(t_end=1, method="bs5").info["hint"] is None
+    assert np.array_equal(swing.run(t_end=1, hint=None)["x"], swing.run(t_end=1)["x"])
+    with pytest.raises(ValueError, match='hint "bs5": auto does not choose it; give one of dop853, '):
+        swing.run(hint="bs5")
+
+
 def test_a_linear_model_has_its_mode():
     modes = bg.compile(SWING).linearize()["modes"]
     assert math.isclose(modes[0]["imaginary"], 5, rel_tol=1e-9)

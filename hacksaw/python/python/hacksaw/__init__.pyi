@@ -20,7 +20,8 @@ class Table:
 
     units: dict[str, str]
     info: dict[str, Any]
-    """How it was made and what it took; `info["inputs"]` has of each input its unit, `is_given`, and `value` or `table`."""
+    """How it was made and what it took; `info["inputs"]` has of each input its unit, `is_given`, and `value` or `table`;
+    `info["hint"]` is the method by which `auto` made most of it, for `run(.., hint=..)`, None after another method."""
 
     def __getitem__(self, name: str) -> npt.NDArray[np.float64]: ...
     def __contains__(self, name: str) -> bool: ...
@@ -51,6 +52,7 @@ def run(
     t_end: float | None = None,
     step: float | None = None,
     method: str | None = None,
+    hint: str | PathLike[str] | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     fixed_step: float | None = None,
@@ -59,7 +61,8 @@ def run(
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> Table:
-    """Run the model; parameters are keyword arguments, SI units."""
+    """Run the model; parameters are keyword arguments, SI units. ``hint`` is what ``auto`` begins with: a name, the
+    ``info["hint"]`` of a run before, or its summary.json."""
 
 def linearize(
     scene: str | None = None,
@@ -79,6 +82,7 @@ def sensitivity(
     t_end: float | None = None,
     step: float | None = None,
     method: str | None = None,
+    hint: str | PathLike[str] | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     inputs: Mapping[str, float | str] | None = None,
@@ -101,6 +105,7 @@ def optimize(
     t_end: float | None = None,
     step: float | None = None,
     method: str | None = None,
+    hint: str | PathLike[str] | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     inputs: Mapping[str, float | str] | None = None,

@@ -24,7 +24,8 @@ class Table:
 
     units: dict[str, str]
     info: dict[str, Any]
-    """How it was made and what it took; `info["inputs"]` has of each input its unit, `is_given`, and `value` or `table`."""
+    """How it was made and what it took; `info["inputs"]` has of each input its unit, `is_given`, and `value` or `table`;
+    `info["hint"]` is the method by which `auto` made most of it, for `run(.., hint=..)`, None after another method."""
 
     def __getitem__(self, name: str) -> npt.NDArray[np.float64]: ...
     def __contains__(self, name: str) -> bool: ...
@@ -62,6 +63,7 @@ class Model:
         t_end: float | None = None,
         step: float | None = None,
         method: str | None = None,
+        hint: str | PathLike[str] | None = None,
         rtol: float | None = None,
         atol: float | None = None,
         fixed_step: float | None = None,
@@ -70,7 +72,8 @@ class Model:
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> Table:
-        """Run the model; parameters are keyword arguments, SI units."""
+        """Run the model; parameters are keyword arguments, SI units. ``hint`` is what ``auto`` begins with: a name, the
+        ``info["hint"]`` of a run before, or its summary.json."""
 
     def linearize(
         self,
@@ -92,6 +95,7 @@ class Model:
         t_end: float | None = None,
         step: float | None = None,
         method: str | None = None,
+        hint: str | PathLike[str] | None = None,
         rtol: float | None = None,
         atol: float | None = None,
         inputs: Mapping[str, float | str] | None = None,
@@ -115,6 +119,7 @@ class Model:
         t_end: float | None = None,
         step: float | None = None,
         method: str | None = None,
+        hint: str | PathLike[str] | None = None,
         rtol: float | None = None,
         atol: float | None = None,
         inputs: Mapping[str, float | str] | None = None,
