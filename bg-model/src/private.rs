@@ -49,5 +49,48 @@ macro_rules! __bond_graph_of_one_version {
         ));
     };
 }
-pub use crate::__bond_graph_in_vectors as in_vectors;
 pub use crate::__bond_graph_of_one_version as of_one_version;
+
+/// What a generated model says in `Mechanism` where it has functions in the vectors of a machine: for slopes, and with
+/// `lanes` for runs side by side, too. Nothing in test builds, half of which these functions would be: there
+/// [`RunByRun`](crate::model::dynamics::RunByRun) and [`EachAlone`](crate::model::dynamics::EachAlone) give the same.
+#[cfg(all(feature = "std", not(debug_assertions)))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __bond_graph_in_vectors {
+    () => {
+        fn slopes<V: $crate::__private::Slopes>(
+            &self,
+            values: &[$crate::__private::Vec<$crate::scalar::Gradient>],
+        ) -> ::core::option::Option<
+            ::core::result::Result<$crate::mechanism::SideBySide<V>, $crate::parameters::ParameterError>,
+        > {
+            ::core::option::Option::Some($crate::__private::join(self, values))
+        }
+    };
+    (lanes) => {
+        $crate::__bond_graph_in_vectors!();
+
+        fn lanes<V: $crate::__private::Vector>(
+            &self,
+            values: &[$crate::__private::Lanes<V>],
+        ) -> ::core::option::Option<
+            ::core::result::Result<
+                $crate::__private::Box<dyn $crate::__private::Abreast<V>>,
+                $crate::parameters::ParameterError,
+            >,
+        > {
+            ::core::option::Option::Some($crate::__private::into_lanes(self, values))
+        }
+    };
+}
+
+/// What a generated model says in `Mechanism` where it has functions in the vectors of a machine: nothing in such a
+/// build.
+#[cfg(not(all(feature = "std", not(debug_assertions))))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __bond_graph_in_vectors {
+    ($(lanes)?) => {};
+}
+pub use crate::__bond_graph_in_vectors as in_vectors;
