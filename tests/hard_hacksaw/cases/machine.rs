@@ -174,7 +174,7 @@ pub fn reversed(at: f64, by_input: bool, scale: Scale) -> Box<dyn Followable> {
     } else {
         (at, Input::constant(0.0))
     };
-    let parameters = ReversalParameters { reversal, ..ReversalParameters::default() };
+    let parameters = ReversalParameters { reversal };
     let model = Reversal::new(parameters, ReversalInputs { extra }).expect("in range");
     let start = model.start().expect("the mechanism closes");
     problem(model, start, &planar_names(), scale)

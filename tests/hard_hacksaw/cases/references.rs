@@ -106,8 +106,7 @@ pub fn planar_poses(case: &Planar, accuracy: Accuracy) -> Result<Vec<Vec<f64>>, 
 
 fn reversed_poses(instants: &[f64], accuracy: Accuracy) -> Result<Vec<Vec<f64>>, Fault> {
     let inputs = ReversalInputs { extra: Input::constant(0.0) };
-    let model = Reversal::new(ReversalParameters { reversal: REVERSAL, ..ReversalParameters::default() }, inputs)
-        .expect("in range");
+    let model = Reversal::new(ReversalParameters { reversal: REVERSAL }, inputs).expect("in range");
     poses(&model, instants, accuracy)
 }
 

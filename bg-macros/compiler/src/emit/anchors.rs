@@ -108,9 +108,9 @@ impl Scopes {
         };
         let (parts, graphs) = (each(&self.parts, &quote!(parts)), each(&self.graphs, &quote!(graphs)));
         // A word that begins no statement may be the beginning of one.
-        let unknown = &source.heard.unknown;
+        let mut unknown = source.heard.unknown.iter().filter(|spoken| is_name(&spoken.word.text));
         let is_at_caret = |spoken: &&Spoken| spoken.word.text.contains(CARET);
-        let word = unknown.iter().find(is_at_caret).or_else(|| unknown.first());
+        let word = unknown.clone().find(is_at_caret).or_else(|| unknown.next());
         let word = word.map(|Spoken { block, word, .. }| {
             let (block, word) = (block_of(block), placed(&word.text, word.span));
             quote!(fn word_at_caret() { let _ = words::#block::#word; })
@@ -187,9 +187,9 @@ fn block_of(block: &str) -> Ident {
     identifier(&letters.collect::<String>().replace(' ', "_"))
 }
 
-/// Whether a word can be the name of an item: Rust has some of the language's words for itself.
+/// Whether a word can be the name of an item as it is: Rust has some of the language's words for itself.
 fn is_name(word: &str) -> bool {
-    syn::parse_str::<Ident>(word).is_ok()
+    !word.starts_with("r#") && syn::parse_str::<Ident>(word).is_ok()
 }
 
 /// The functions of the language as methods of each graph and part: so they are offered beside its names.

@@ -109,7 +109,7 @@ fn what_is_compiled_can_be_chosen_and_run() {
     assert!(answers[8]["faults"][0]["message"].is_string(), "a text alone uses no files: {}", answers[8]);
     assert!(answers[9]["faults"][0]["message"].as_str().unwrap().contains("more than 200 deep"));
     assert_eq!(answers[10]["chosen"], json!(["SliderCrank", "planar-slider-crank"]), "a graph that is there");
-    assert!(answers[11]["page"].as_str().expect("a page").contains("<h1>PlanarSliderCrank</h1>"));
+    assert!(answers[11]["page"].as_str().expect("a page").contains("<h1>SliderCrank: PlanarSliderCrank</h1>"));
     assert!(answers[12]["fault"].as_str().unwrap().starts_with("the question cannot be read: "));
 }
 

@@ -295,6 +295,10 @@ fn likeliest(found: &str, expected: &str) -> String {
     // Every second piece between backquotes is quoted.
     let quoted = expected.split('`').skip(1).step_by(2);
     let word = found.trim_matches('`');
+    if matches!(word, "and" | "or" | "&&" | "||" | "&" | "|") {
+        return "a condition is one comparison: of `a > 0` and `b > 0` both hold where `min(a, b) > 0`, one where `max(a, b) > 0`"
+            .to_owned();
+    }
     if let Some(near) = near_miss(word, quoted.filter(|candidate| candidate.len().min(word.len()) > 1)) {
         return format!("write `{near}`");
     }

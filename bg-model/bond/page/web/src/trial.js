@@ -96,7 +96,7 @@ async function found(page, motion, verdict) {
   const example = document.getElementById("example");
   example.value = "hacksaw";
   example.dispatchEvent(new Event("change"));
-  await until("the hacksaw", () => inFrame("h1")?.textContent === "Motion" && inFrame("#machine canvas"));
+  await until("the hacksaw", () => inFrame("h1")?.textContent === "Hacksaw: Motion" && inFrame("#machine canvas"));
   verdict.hacksaw_ms = performance.now() - begin;
   await until("the hacksaw's rate", isThere);
   verdict.hacksaw = document.getElementById("status").textContent;

@@ -66,6 +66,18 @@ fn what_is_nearly_a_unit_is_told_in_arguments_vectors_and_parentheses() {
 }
 
 #[test]
+fn two_comparisons_are_one_of_the_least_or_the_largest() {
+    let help = "a condition is one comparison: of `a > 0` and `b > 0` both hold where `min(a, b) > 0`, one where `max(a, b) > 0`";
+    for (text, place, found) in [
+        ("let a = if t > 1 and t < 2 { 1 } else { 0 };", "2:18", "`and`, expected `{ ... }`"),
+        ("let a = if t > 1 && t < 2 { 1 } else { 0 };", "2:18", "`&&`, expected `{ ... }`"),
+        ("memory m: 1 = 2 while t < 1 or t > 2;", "2:29", "`or`, expected `start` or `;`"),
+    ] {
+        assert_eq!(in_graph(text).trim_end(), format!("{place} BG0102 found {found} | {help}"), "{text}");
+    }
+}
+
+#[test]
 fn the_displacement_of_a_junction_has_no_start() {
     let fault = "BG0102 `slide.displacement` has no start: it counts from t = 0, where it is 0 | leave this out, and write \
                  `slide.displacement + E` with the start E where you use it";
