@@ -10,6 +10,7 @@ use proc_macro2::{Delimiter, Group, Span, TokenStream};
 
 use super::{
     SyntaxFault,
+    fault::joins_conditions,
     token::{Token, TokenKind, joined, tokens},
 };
 use crate::fault::{Fault, Faults};
@@ -427,7 +428,7 @@ impl Cursor<'_> {
     pub fn unit_of_number(&self) -> Option<SyntaxFault> {
         let last = self.at.checked_sub(1).and_then(|last| self.tokens.get(last))?;
         let (number, word) = (last.kind.number()?, self.word()?.to_owned());
-        let unit = symbol_for(&word)?;
+        let unit = symbol_for(&word).filter(|_| !joins_conditions(&word))?;
         Some(SyntaxFault::UnitOfNumber { number, word, unit })
     }
 

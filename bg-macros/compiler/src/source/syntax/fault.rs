@@ -290,12 +290,17 @@ fn suggested(word: &str, known: &[&'static str]) -> String {
     }
 }
 
+/// Whether it is what other languages have between two conditions.
+pub(super) fn joins_conditions(word: &str) -> bool {
+    matches!(word, "and" | "or" | "&&" | "||" | "&" | "|")
+}
+
 /// What to write instead of `found`: the quoted word it was meant to be, or the first of the alternatives.
 fn likeliest(found: &str, expected: &str) -> String {
     // Every second piece between backquotes is quoted.
     let quoted = expected.split('`').skip(1).step_by(2);
     let word = found.trim_matches('`');
-    if matches!(word, "and" | "or" | "&&" | "||" | "&" | "|") {
+    if joins_conditions(word) {
         return "a condition is one comparison: of `a > 0` and `b > 0` both hold where `min(a, b) > 0`, one where `max(a, b) > 0`"
             .to_owned();
     }
