@@ -1,6 +1,6 @@
-//! An inverted pendulum on a ball, the example `ball_balancer.bond`, beside the equations of Newton and Euler by hand.
+//! An inverted pendulum on a ball, the example `ball_balancer.bond`, beside hand-written equations of Newton and Euler.
 //!
-//! By hand there is no constraint: the ball rolls, so its angular acceleration gives that of its centre, the frame's hub is
+//! They have no constraint: the ball rolls, so its angular acceleration gives that of its centre, the frame's hub is
 //! there, and force and moment of the hub and the ground follow from the two angular accelerations. What is left of the
 //! moments of the two bodies is linear in these six numbers.
 

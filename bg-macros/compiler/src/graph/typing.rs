@@ -14,17 +14,7 @@ use bg_units::Unit;
 
 use crate::graph::units::Dimension;
 use crate::source::ast::{BinaryOperator, TrackKind};
-
-/// The shape of a value.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Shape {
-    /// A number.
-    Scalar,
-    /// Three components.
-    Vector,
-    /// Three rows of three.
-    Matrix,
-}
+pub use crate::source::functions::Shape;
 
 impl Shape {
     /// The shape of a bond's variables.

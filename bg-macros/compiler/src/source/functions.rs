@@ -5,7 +5,7 @@
 
 use std::fmt::{self, Display, Formatter};
 
-/// The shape of an argument or a value.
+/// The shape of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shape {
     /// A number.

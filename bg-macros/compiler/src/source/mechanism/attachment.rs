@@ -107,20 +107,18 @@ impl Expansion<'_> {
     pub(super) fn drive(&mut self, drive: &Drive) {
         if let Some(joint) = self.joints.get(drive.target.text.as_str()) {
             let kind = joint.kind;
-            let any_axis = kind.turns_freely().then_some(("twist", "rotation"));
+            let spin = kind.spin().map(|_| ("spin", "rotation"));
+            let turned = spin.or(kind.turns_freely().then_some(("twist", "rotation")));
+            let slid = kind.slide().map(|_| ("slide", "translation"));
             let wanted = match drive.kind {
-                DriveKind::Torque => kind.spin().map(|_| ("spin", "rotation")).or(any_axis),
-                DriveKind::Force => kind.slide().map(|_| ("slide", "translation")),
-                DriveKind::Speed => {
-                    kind.spin().map(|_| ("spin", "rotation")).or(kind.slide().map(|_| ("slide", "translation")))
-                }
+                DriveKind::Torque => turned,
+                DriveKind::Force => slid,
+                DriveKind::Speed => spin.or(slid),
             };
-            let takes = if kind.spin().is_some() || kind.turns_freely() {
-                Takes::Torque
-            } else if kind.slide().is_some() {
-                Takes::Force
-            } else {
-                Takes::Nothing
+            let takes = match (turned, slid) {
+                (Some(_), _) => Takes::Torque,
+                (None, Some(_)) => Takes::Force,
+                (None, None) => Takes::Nothing,
             };
             match wanted {
                 Some((axis, domain)) => self.drive_joint(drive, axis, domain),

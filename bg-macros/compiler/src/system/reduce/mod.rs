@@ -126,7 +126,7 @@ pub fn for_scene(
     let mut report = Report::new(&equations);
     report.count("literal", equations.states.len(), operations(&mut equations));
     run(&PARAMETERS, &mut equations, wanted, &mut report, operations);
-    let before = (equations.clone(), report.clone());
+    let before = may_be_jointed(&equations, wanted).then(|| (equations.clone(), report.clone()));
     let mut by_tree = match in_joint_coordinates(before.clone(), wanted, tree::Which::NotFlat, operations) {
         Some(Jointed { equations, report, is_long: true }) => return (equations, report),
         by_tree => by_tree,
@@ -173,16 +173,19 @@ fn run(
     }
 }
 
-/// The reduced equations with bodies on trees of joints by the joints' coordinates, where there are such.
+/// Whether the scene lets bodies have the coordinates of their joints, and there may be such.
+fn may_be_jointed(equations: &StateEquations, wanted: &Wanted) -> bool {
+    wanted.speeds && wanted.links.is_empty() && tree::may_apply(equations)
+}
+
+/// These equations reduced, with bodies on trees of joints by the joints' coordinates, where there are such.
 fn in_joint_coordinates(
-    (mut equations, mut report): (StateEquations, Report),
+    of: Option<(StateEquations, Report)>,
     wanted: &Wanted,
     which: tree::Which,
     operations: &mut Operations<'_>,
 ) -> Option<Jointed> {
-    if !wanted.speeds || !wanted.links.is_empty() || !tree::may_apply(&equations) {
-        return None;
-    }
+    let (mut equations, mut report) = of?;
     tree::put(&mut equations, &mut report, which)?;
     report.count("joints by their coordinates", equations.states.len(), operations(&mut equations));
     let all = tree::speeds(&equations);
