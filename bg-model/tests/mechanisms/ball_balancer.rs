@@ -14,8 +14,10 @@ const TEXT: &str = include_str!("../../bond/examples/ball_balancer.bond");
 
 const RADIUS: f64 = 0.12;
 const HEIGHT: f64 = 0.5;
-const BALL: f64 = 4.0;
-const FRAME: f64 = 10.0;
+/// The masses of ball and frame, and the frame's edges.
+const BALL: f64 = 550.0 * 4.0 / 3.0 * std::f64::consts::PI * RADIUS * RADIUS * RADIUS;
+const FRAME: f64 = 400.0 * EDGES[0] * EDGES[1] * EDGES[2];
+const EDGES: [f64; 3] = [0.24, 0.16, 0.6];
 
 /// The ball's centre, the frame's quaternion, the angular velocities of ball and frame in inertial axes.
 struct ByHand;
@@ -61,9 +63,11 @@ impl State {
         let center = rolled(ball) + frame.cross(&arm) + w.cross(&w.cross(&arm));
         let hub = FRAME * (center - gravity);
         let ground = BALL * (rolled(ball) - gravity) + hub;
-        let tensor = self.axes * Matrix3::from_diagonal(&Vector3::new(0.6, 0.5, 0.2)) * self.axes.transpose();
+        let squares = Vector3::from(EDGES).map(|edge| edge * edge);
+        let moments = squares.map(|square| FRAME / 12.0 * (squares.sum() - square));
+        let tensor = self.axes * Matrix3::from_diagonal(&moments) * self.axes.transpose();
         let on_frame = torque - arm.cross(&hub) - tensor * frame - w.cross(&(tensor * w));
-        let on_ball = -torque + Vector3::new(0.0, 0.0, -RADIUS).cross(&ground) - 0.03 * ball;
+        let on_ball = -torque + Vector3::new(0.0, 0.0, -RADIUS).cross(&ground) - 0.4 * BALL * RADIUS * RADIUS * ball;
         (Vector6::from_iterator(on_ball.iter().chain(on_frame.iter()).copied()), ground)
     }
 
@@ -137,5 +141,8 @@ fn a_frame_on_a_ball_comes_to_rest_where_it_began() {
     let start = balancer.start().unwrap_or_else(|error| panic!("{error}"));
     let finish = run(&*balancer, &start, 40.0);
     let found = outputs(&*balancer, finish.t, finish.x.as_slice(), &finish.negative);
-    assert!(found[..5].iter().all(|value| value.abs() < 1e-3) && (found[5] - 14.0 * 9.81).abs() < 1e-6, "{found:?}");
+    assert!(
+        found[..5].iter().all(|value| value.abs() < 1e-3) && (found[5] - (BALL + FRAME) * 9.81).abs() < 1e-6,
+        "{found:?}"
+    );
 }

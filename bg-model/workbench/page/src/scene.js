@@ -142,7 +142,8 @@ export class MachineView {
       const group = body(bodies[index], this.size, material);
       return { track: bodies[index], group, material };
     });
-    this.supports = new Group().add(...ground.map(({ name, at }) => this.#supportAt(name, at)));
+    this.supports = new Group();
+    for (const { name, at } of ground) this.supports.add(this.#supportAt(name, at));
     this.arrows = new Arrows(times, joints, this.size, this.arrows?.material);
     this.world.add(...this.bodies.map(({ group }) => group), this.arrows.group);
     this.scene.add(this.supports);
