@@ -3,7 +3,6 @@
 //! In: tokens. Out: a tree of bond-graph words without parts for each model: the literal graph and one for each scene.
 
 pub mod ast;
-mod ast_part;
 pub mod clause;
 pub mod drawing;
 pub mod functions;
@@ -13,7 +12,6 @@ pub mod names;
 pub mod numbers;
 pub mod part;
 pub mod print;
-mod print_part;
 pub mod scene;
 pub mod syntax;
 pub mod visibility;
