@@ -16,7 +16,7 @@ const READERS: [&str; 2] = ["emit", "stages"];
 /// The rooms whose arrows are counted, with the rooms in them.
 const STAGES: [&str; 6] = ["source", "graph", "system", "program", "tables", "emit"];
 /// The most arrows between them. What another room needs stands at the door: the room's `mod.rs`.
-const MOST_ARROWS: usize = 44;
+const MOST_ARROWS: usize = 54;
 
 fn floor(room: &str) -> usize {
     if READERS.contains(&room) {

@@ -10,7 +10,6 @@ use proc_macro2::{Delimiter, Group, Span, TokenStream};
 
 use super::{
     SyntaxFault,
-    fault::joins_conditions,
     token::{Token, TokenKind, joined, tokens},
 };
 use crate::fault::{Fault, Faults};
@@ -428,7 +427,7 @@ impl Cursor<'_> {
     pub fn unit_of_number(&self) -> Option<SyntaxFault> {
         let last = self.at.checked_sub(1).and_then(|last| self.tokens.get(last))?;
         let (number, word) = (last.kind.number()?, self.word()?.to_owned());
-        let unit = symbol_for(&word).filter(|_| !joins_conditions(&word))?;
+        let unit = symbol_for(&word)?;
         Some(SyntaxFault::UnitOfNumber { number, word, unit })
     }
 

@@ -32,6 +32,9 @@ const GROUP: Place = Place { name: "the group", words: &[], list: false };
 /// Operators that compare or join conditions.
 const CONDITION: [&str; 8] = ["<", "<=", ">", ">=", "==", "!=", "&&", "||"];
 
+/// What else joins two of them in other languages.
+const JOINING: [&str; 4] = ["and", "or", "&", "|"];
+
 /// An expression and the height of its tree.
 struct Tall {
     expression: Expression,
@@ -236,8 +239,11 @@ impl Cursor<'_> {
         let left = self.binary(0)?;
         let comparison = self.comparison()?;
         let right = self.binary(0)?;
-        match self.condition_symbol() {
-            Some(operator) => Err(self.note(self.span(), &SyntaxFault::SecondComparison { operator })),
+        let joining = JOINING.into_iter().find(|&word| self.is(word) || self.word() == Some(word));
+        match self.condition_symbol().or(joining) {
+            Some(operator) => {
+                Err(self.note(self.span(), &SyntaxFault::SecondComparison { operator: operator.to_owned() }))
+            }
             None => Ok((left, comparison, right)),
         }
     }

@@ -70,10 +70,10 @@ pub enum SyntaxFault {
         /// The operator.
         operator: &'static str,
     },
-    /// `if a < b < c`, `if a < b && c < d`.
+    /// `if a < b < c`, `while a < b and c < d`.
     SecondComparison {
-        /// The operator after the first comparison.
-        operator: &'static str,
+        /// What stands after the first comparison.
+        operator: String,
     },
     /// `if a == b`, `if a != b`.
     Equality {
@@ -208,7 +208,7 @@ impl Explain for SyntaxFault {
                 format!("found `{operator}` in a value, expected it only between `if` and `{{`")
             }
             Self::SecondComparison { operator } => {
-                format!("found `{operator}` after a comparison, expected `{{`: an `if` compares once")
+                format!("found `{operator}` after a comparison: a condition is one comparison")
             }
             Self::Equality { operator } => format!("found `{operator}`, expected `<`, `<=`, `>` or `>=`"),
             Self::Duplicate { clause } => format!("found a second {clause}, expected one"),
@@ -252,11 +252,11 @@ impl Explain for SyntaxFault {
             Self::NotAUnit { .. } => "write unit symbols joined by `*` and `/`, with whole powers, or `1`".into(),
             Self::IfWithoutElse => "write `else { ... }` after its block".into(),
             Self::ComparisonOutsideIf { .. } => "write `if a < b { 1 } else { 0 }`".into(),
-            Self::SecondComparison { operator: "||" } => {
-                "chain a second `if`: `if a < b { e } else if c < d { e } else { f }`".into()
+            Self::SecondComparison { operator } if matches!(operator.as_str(), "||" | "|" | "or") => {
+                "write `max(b - a, d - c) > 0`, which holds where `a < b` or `c < d` does; of two units chain a second `if`".into()
             }
             Self::SecondComparison { .. } => {
-                "nest a second `if`: `if a < b { if c < d { e } else { f } } else { f }`".into()
+                "write `min(b - a, d - c) > 0`, which holds where both `a < b` and `c < d` do; of two units nest a second `if`".into()
             }
             Self::Equality { .. } => "compare with `<`, `<=`, `>` or `>=`".into(),
             Self::Duplicate { clause } => format!("remove one {clause}"),
@@ -290,20 +290,11 @@ fn suggested(word: &str, known: &[&'static str]) -> String {
     }
 }
 
-/// Whether it is what other languages have between two conditions.
-pub(super) fn joins_conditions(word: &str) -> bool {
-    matches!(word, "and" | "or" | "&&" | "||" | "&" | "|")
-}
-
 /// What to write instead of `found`: the quoted word it was meant to be, or the first of the alternatives.
 fn likeliest(found: &str, expected: &str) -> String {
     // Every second piece between backquotes is quoted.
     let quoted = expected.split('`').skip(1).step_by(2);
     let word = found.trim_matches('`');
-    if joins_conditions(word) {
-        return "a condition is one comparison: of `a > 0` and `b > 0` both hold where `min(a, b) > 0`, one where `max(a, b) > 0`"
-            .to_owned();
-    }
     if let Some(near) = near_miss(word, quoted.filter(|candidate| candidate.len().min(word.len()) > 1)) {
         return format!("write `{near}`");
     }
