@@ -46,9 +46,21 @@ pub fn fill(module: &Bound<'_, PyModule>, program: impl Fn() -> Program + Send +
     for name in model::FUNCTIONS {
         module.add(name, model.getattr(name)?)?;
     }
-    module.add_class::<table::Table>()?;
-    module.add_class::<model::Picture>()?;
-    module.add("RunFailed", module.py().get_type::<model::RunFailed>())?;
+    classes(module)?;
     module.add("__doc__", model.getattr("about")?)?;
     module.add("__version__", model.getattr("version")?)
+}
+
+/// Puts the classes of what a model's functions give into `module`, as classes of that module: pickle finds them there.
+///
+/// # Errors
+/// Python's.
+pub fn classes(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    let py = module.py();
+    module.add("RunFailed", py.get_type::<model::RunFailed>())?;
+    for class in [py.get_type::<table::Table>(), py.get_type::<model::Picture>(), py.get_type::<model::Page>()] {
+        class.setattr("__module__", module.name()?)?;
+        module.add(class.name()?.to_str()?, class)?;
+    }
+    Ok(())
 }

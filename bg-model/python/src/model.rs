@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 
 use bg_model::integrator::Integrator;
 use bg_model::nalgebra::DMatrix;
+use bg_model::run::State;
 use bg_workbench::Program;
-use bg_workbench::calls::{self, Asked, Ran, Started};
+use bg_workbench::calls::{self, Asked, Begin, Fit, Number, Ran};
 use bg_workbench::files::head::name_and_unit;
 use bg_workbench::files::parquet;
 use bg_workbench::hint;
@@ -33,12 +34,17 @@ pyo3::create_exception!(
 );
 
 /// The functions that a module has.
-pub const FUNCTIONS: [&str; 12] = [
+pub const FUNCTIONS: [&str; 17] = [
     "run",
+    "step",
     "plot",
+    "graph",
+    "report",
     "linearize",
     "campbell",
     "sensitivity",
+    "gradient",
+    "identify",
     "optimize",
     "parameters",
     "scenes",
@@ -113,9 +119,16 @@ fn asked(
     let mut set = set.unwrap_or_default();
     set.extend(parameters.unwrap_or_default());
     let start = match start {
-        "model" => Started::Model,
-        "equilibrium" => Started::Equilibrium,
-        other => return Err(PyValueError::new_err(format!("start {other:?}: give \"model\" or \"equilibrium\""))),
+        "model" => Begin::Model,
+        "equilibrium" => Begin::Equilibrium,
+        state if state.trim_start().starts_with('{') => {
+            Begin::At(State::from_json(state).map_err(|fault| PyValueError::new_err(format!("start: {fault}")))?)
+        }
+        other => {
+            let fault =
+                format!("start {other:?}: give \"model\", \"equilibrium\" or a state, as info[\"state\"] of a run");
+            return Err(PyValueError::new_err(fault));
+        }
     };
     Ok(Asked { scene, set, inputs, start, ..Asked::default() })
 }
@@ -147,6 +160,11 @@ fn integrated(
 
 #[pymethods]
 impl Model {
+    fn __repr__(&self) -> String {
+        let [_, about] = calls::about(&(self.program)());
+        format!("<Model: {}>", about.lines().next().unwrap_or_default())
+    }
+
     /// What the model is.
     #[getter]
     fn about(&self) -> String {
@@ -190,17 +208,53 @@ impl Model {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let mut ran = interruptible(py, |_| calls::run(&(self.program)(), &asked))?.map_err(refused)?;
+        let mut ran = interruptible(py, |goes_on| calls::run(&(self.program)(), &asked, goes_on))?.map_err(refused)?;
         let failure = ran.failure.take();
         let table = table(py, ran)?;
         match failure {
             None => Ok(table),
-            Some(failure) => {
-                let failed = RunFailed::new_err(format!("the run failed: {failure}"));
-                failed.value(py).setattr("run", table)?;
-                Err(failed)
-            }
+            Some(failure) => Err(run_failed(py, &failure, table)?),
         }
+    }
+
+    /// Go on by `dt` s from a state: what a controller or an environment for learning does again and again.
+    ///
+    /// Gives the next state and the outputs there by name. A state is a text, the `info["state"]` of a run; without one
+    /// it begins at the model's own start. Inputs and parameters are those of this step. Raises `RunFailed` where it
+    /// does not come to its end.
+    #[pyo3(signature = (state=None, dt=0.01, scene=None, *, method=None, hint=None, rtol=None, atol=None, fixed_step=None, inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn step<'py>(
+        &self,
+        py: Python<'py>,
+        state: Option<&str>,
+        dt: f64,
+        scene: Option<String>,
+        method: Option<&str>,
+        hint: Option<PathBuf>,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        fixed_step: Option<f64>,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<(String, Bound<'py, PyDict>)> {
+        if !(dt > 0.0 && dt.is_finite()) {
+            return Err(PyValueError::new_err(format!("dt {dt}: must be a finite number above 0")));
+        }
+        let mut asked = asked(scene, set, inputs, state.unwrap_or("model"), parameters)?;
+        let t_end = asked.start.time() + dt;
+        integrated(&mut asked, Some(t_end), Some(dt), method, hint, rtol, atol)?;
+        asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
+        let mut ran = interruptible(py, |goes_on| calls::run(&(self.program)(), &asked, goes_on))?.map_err(refused)?;
+        if let Some(failure) = ran.failure.take() {
+            return Err(run_failed(py, &failure, table(py, ran)?)?);
+        }
+        let outputs = PyDict::new(py);
+        for column in &ran.run.recording.columns {
+            outputs.set_item(&column.name, column.values.last())?;
+        }
+        Ok((ran.run.last.to_json().map_err(refused)?, outputs))
     }
 
     /// Run the model and draw a picture of it: "v over x", "spectrum of x", "orders of torque over crank.angle", or a
@@ -230,8 +284,41 @@ impl Model {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         let others = others.unwrap_or_default();
-        let svg = interruptible(py, |_| calls::plot(&(self.program)(), &asked, picture, &others))?.map_err(refused)?;
-        Ok(Picture { svg })
+        let svg = interruptible(py, |goes_on| calls::plot(&(self.program)(), &asked, picture, &others, goes_on))?;
+        Ok(Picture { svg: svg.map_err(refused)? })
+    }
+
+    /// The bond graph of a scene, with its causal strokes: a picture, which a notebook shows.
+    #[pyo3(signature = (scene=None))]
+    fn graph(&self, scene: Option<&str>) -> PyResult<Picture> {
+        Ok(Picture { svg: calls::graph(&(self.program)(), scene).map_err(refused)? })
+    }
+
+    /// Run the model and show all of it: the machine in motion, charts, energy balance, the bond graph.
+    ///
+    /// Gives a page, which a notebook shows: its HTML is `html`, and `save(path)` writes it. A run that stops before its
+    /// end has a page that says so.
+    #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, start="model", inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn report(
+        &self,
+        py: Python<'_>,
+        scene: Option<String>,
+        t_end: Option<f64>,
+        step: Option<f64>,
+        method: Option<&str>,
+        hint: Option<PathBuf>,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        start: &str,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<Page> {
+        let mut asked = asked(scene, set, inputs, start, parameters)?;
+        integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
+        let html = interruptible(py, |goes_on| calls::page(&(self.program)(), &asked, goes_on))?;
+        Ok(Page { html: html.map_err(refused)? })
     }
 
     /// Follow natural frequencies over a parameter, "speed=0..12000": a Campbell diagram.
@@ -326,6 +413,76 @@ impl Model {
         let t = ("t".to_owned(), "s".to_owned(), Values::Real(ran.run.recording.times));
         let courses = courses.into_iter().map(|course| (course.name, course.unit, Values::Real(course.values)));
         Table::new(py, std::iter::once(t).chain(courses), info)
+    }
+
+    /// Differentiate one number of a run by all parameters at once, by the run followed backwards.
+    ///
+    /// The number is the output `of` at the end, or at `at` s, or with `integral` its integral over the run. Gives its
+    /// value and a dict of its derivatives by the parameters in `by`, or by all of the scene: what a search by gradients
+    /// asks for (`scipy.optimize.minimize(.., jac=True)`, a JAX function with `custom_vjp`). Raises ValueError where
+    /// there are none.
+    #[pyo3(signature = (of, scene=None, *, at=None, integral=false, by=None, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn gradient<'py>(
+        &self,
+        py: Python<'py>,
+        of: String,
+        scene: Option<String>,
+        at: Option<f64>,
+        integral: bool,
+        by: Option<Vec<String>>,
+        t_end: Option<f64>,
+        step: Option<f64>,
+        method: Option<&str>,
+        hint: Option<PathBuf>,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<(f64, Bound<'py, PyDict>)> {
+        let mut asked = asked(scene, set, inputs, "model", parameters)?;
+        integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
+        if at.is_some() && integral {
+            return Err(PyValueError::new_err("at and integral: an integral is over the whole run; give one of them"));
+        }
+        let of = Number { output: of, at, is_integral: integral };
+        let by = by.unwrap_or_default();
+        let found = interruptible(py, |_| calls::gradient(&(self.program)(), &asked, &of, &by))?.map_err(refused)?;
+        let slopes = PyDict::new(py);
+        for (name, slope) in found.by {
+            slopes.set_item(name, slope)?;
+        }
+        Ok((found.value, slopes))
+    }
+
+    /// Fit parameters to what was measured, with what is known of them.
+    ///
+    /// `data` is the path of a CSV file, or columns by name: `t` in s, the others named as outputs, or as `columns` says,
+    /// "name=output". `fit` are names, `bounds` narrower ranges, "k=1e3..1e5". Gives a dict: `parameters` with value and
+    /// interval, `converged`, what each of the `columns` leaves. Raises ValueError where nothing can be fitted.
+    #[pyo3(signature = (data, fit, scene=None, *, bounds=None, columns=None, method=None, rtol=None, inputs=None, set=None, **parameters))]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
+    fn identify<'py>(
+        &self,
+        py: Python<'py>,
+        data: &Bound<'py, PyAny>,
+        fit: Texts,
+        scene: Option<String>,
+        bounds: Option<Texts>,
+        columns: Option<Texts>,
+        method: Option<&str>,
+        rtol: Option<f64>,
+        inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
+        set: Option<BTreeMap<String, f64>>,
+        parameters: Option<BTreeMap<String, f64>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut asked = asked(scene, set, inputs, "model", parameters)?;
+        integrated(&mut asked, None, None, method, None, rtol, None)?;
+        let all = |texts: Option<Texts>| texts.map(Texts::all).unwrap_or_default();
+        let fit = Fit { data: measured(data)?, parameters: fit.all(), bounds: all(bounds), columns: all(columns) };
+        let found = interruptible(py, |_| calls::identify(&(self.program)(), &asked, &fit))?.map_err(refused)?;
+        py.import("json")?.call_method1("loads", (found.to_string(),))
     }
 
     /// Find the parameters with which a number of a run is least or largest, by exact derivatives.
@@ -472,6 +629,36 @@ impl Picture {
     fn save(&self, path: PathBuf) -> PyResult<()> {
         Ok(std::fs::write(path, &self.svg)?)
     }
+
+    fn __repr__(&self) -> String {
+        format!("<Picture of {} characters; save(path) writes it>", self.svg.len())
+    }
+}
+
+/// A page, which a notebook shows.
+#[pyclass(frozen)]
+pub struct Page {
+    /// The page as HTML, in one text with all that it needs.
+    #[pyo3(get)]
+    html: String,
+}
+
+#[pymethods]
+impl Page {
+    /// What a notebook shows: the page in a frame of its own.
+    fn _repr_html_(&self) -> String {
+        let text = self.html.replace('&', "&amp;").replace('"', "&quot;");
+        format!("<iframe srcdoc=\"{text}\" style=\"width: 100%; height: 40em; border: 0\"></iframe>")
+    }
+
+    /// Write it into a file.
+    fn save(&self, path: PathBuf) -> PyResult<()> {
+        Ok(std::fs::write(path, &self.html)?)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Page of {} characters; save(path) writes it>", self.html.len())
+    }
 }
 
 /// A text, or several.
@@ -525,6 +712,37 @@ fn source(plan: &Bound<'_, PyAny>) -> PyResult<Source> {
     }
     let text: String = plan.py().import("json")?.call_method1("dumps", (plan,))?.extract()?;
     calls::toml_of_json(&text).map(Source::Text).map_err(refused)
+}
+
+/// What was measured, as the text of a CSV file: read from a path, or of columns by name.
+fn measured(data: &Bound<'_, PyAny>) -> PyResult<String> {
+    let Ok(columns) = data.getattr("items") else {
+        let path: PathBuf = data.extract()?;
+        return Ok(std::fs::read_to_string(path)?);
+    };
+    let mut named = Vec::new();
+    for item in columns.call0()?.try_iter()? {
+        let (name, values): (String, Vec<f64>) = item?.extract()?;
+        named.push((name, values));
+    }
+    named.sort_by_key(|(name, _)| name != "t");
+    let heads: Vec<&str> = named.iter().map(|(name, _)| name.as_str()).collect();
+    let rows = named.iter().map(|(_, values)| values.len()).max().unwrap_or_default();
+    if let Some((name, values)) = named.iter().find(|(_, values)| values.len() != rows) {
+        let fault = format!("data: the column `{name}` has {} values, another one {rows}", values.len());
+        return Err(PyValueError::new_err(fault));
+    }
+    let field = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
+    let row = |row| named.iter().map(|(_, values)| field(values[row])).collect::<Vec<_>>().join(",");
+    let lines: Vec<String> = std::iter::once(heads.join(",")).chain((0..rows).map(row)).collect();
+    Ok(lines.join("\n"))
+}
+
+/// A run that stopped before its end, with what was reached.
+fn run_failed(py: Python<'_>, failure: &str, table: Table) -> PyResult<PyErr> {
+    let failed = RunFailed::new_err(format!("the run failed: {failure}"));
+    failed.value(py).setattr("run", table)?;
+    Ok(failed)
 }
 
 /// How a run was integrated, what it cost, where it ended, what its inputs were.

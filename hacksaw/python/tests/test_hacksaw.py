@@ -1,5 +1,6 @@
 """The module ``hacksaw`` as a user meets it."""
 
+import pickle
 import subprocess
 import sys
 import threading
@@ -170,24 +171,36 @@ def test_other_readers_read_a_sweep_to_the_same_bits(tmp_path, reader):
         theirs = read_by(reader, sorted(tmp_path.glob(f"{kind}-*.parquet")))
         assert list(theirs) == list(ours.keys())
         for name in ours:
-            expected = [None if value != value else value for value in ours[name].tolist()]
+            # Names are a list, numbers an array.
+            expected = [None if value != value else value for value in list(ours[name])]
             assert theirs[name] == expected, name
     rows = hacksaw.read_sweep(tmp_path)
     assert all((reason != "") == (status != "done") for reason, status in zip(rows["reason"], rows["status"]))
     assert np.isnan(rows["event_1"]).any()
 
 
-def test_ctrl_c_ends_a_sweep_between_runs(tmp_path):
+def interrupted(call):
+    """What a program says that calls this, with Ctrl-C after half a second; what runs in the background may ignore it."""
     program = (
-        "import hacksaw, _thread, threading\n"
-        "threading.Timer(1.0, _thread.interrupt_main).start()\n"
-        f"plan = {{**{PLAN!r}, 't_end': 2, 'grid': {{'torque': {{'from': 8, 'to': 14, 'count': 5000}}}}}}\n"
-        f"try:\n    hacksaw.sweep(plan, {str(tmp_path / 'c')!r})\n"
-        "except KeyboardInterrupt:\n    print('ended')\n"
+        "import hacksaw, _thread, signal, threading\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+        "threading.Timer(0.5, _thread.interrupt_main).start()\n"
+        f"try:\n    {call}\nexcept KeyboardInterrupt:\n    print('ended')\n"
     )
-    ended = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=120)
+
+
+def test_ctrl_c_ends_a_sweep_between_runs(tmp_path):
+    plan = {**PLAN, "t_end": 2, "grid": {"torque": {"from": 8, "to": 14, "count": 5000}}}
+    ended = interrupted(f"hacksaw.sweep({plan!r}, {str(tmp_path / 'c')!r})")
     assert ended.stdout == "ended\n", ended.stderr
     assert not [path for path in (tmp_path / "c").iterdir() if path.suffix == ".unfinished"]
+
+
+@pytest.mark.parametrize("call", ["run('motion', t_end=1e5)", "plot('speed', 'motion', t_end=1e5)"])
+def test_ctrl_c_ends_a_run(call):
+    ended = interrupted(f"hacksaw.{call}")
+    assert ended.stdout == "ended\n", ended.stderr
 
 
 def test_the_stubs_have_what_the_module_has():
@@ -195,3 +208,11 @@ def test_the_stubs_have_what_the_module_has():
     for name in hacksaw.__all__:
         assert f"def {name}(" in stubs or f"class {name}" in stubs or f"{name}:" in stubs, name
         assert getattr(hacksaw, name).__doc__
+
+
+def test_a_run_goes_through_pickle():
+    run = hacksaw.run("motion", t_end=0.02)
+    again = pickle.loads(pickle.dumps(run))
+    assert all(np.array_equal(again[name], run[name]) for name in run)
+    state, outputs = hacksaw.step(None, 0.01, "motion")
+    assert outputs.keys() == set(run.keys()) - {"t"} and hacksaw.step(state, 0.01, "motion")[0] != state

@@ -6,8 +6,7 @@
 use std::path::PathBuf;
 
 use bg_loaded::Fault;
-use bg_python::model::{Model, Picture, RunFailed};
-use bg_python::table::Table;
+use bg_python::model::Model;
 use bg_workbench::Program;
 use bond_graph::file::{self, Text, Wanted};
 use bond_graph::text::Points;
@@ -115,9 +114,7 @@ fn _bond_graph(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(load, module)?)?;
     module.add_function(wrap_pyfunction!(compile, module)?)?;
     module.add_class::<Model>()?;
-    module.add_class::<Table>()?;
-    module.add_class::<Picture>()?;
+    bg_python::classes(module)?;
     module.add("FaultError", module.py().get_type::<FaultError>())?;
-    module.add("RunFailed", module.py().get_type::<RunFailed>())?;
     module.add("__version__", env!("CARGO_PKG_VERSION"))
 }

@@ -1,7 +1,9 @@
 """What Python sees of models that are loaded."""
 
+import json
 import math
 import pathlib
+import pickle
 
 import numpy as np
 import pytest
@@ -165,3 +167,115 @@ def test_tables_get_other_points(tmp_path: pathlib.Path):
         speed(tables={"curv": [[0, 1], [1, 1]]})
     with pytest.raises(ValueError, match="give the path of a CSV file, or rows"):
         speed(tables={"curve": 3})
+
+
+def test_steps_one_after_the_other_are_a_run():
+    swing = bg.compile(SWING)
+    state, steps = None, []
+    for _ in range(4):
+        state, outputs = swing.step(state, 0.25, rtol=1e-11)
+        steps.append(outputs["x"])
+    assert np.allclose(steps, 0.1 * np.cos(5 * np.arange(1, 5) * 0.25), atol=1e-9)
+    # A state of a run is one, too, and a run begins in one.
+    run = swing.run(t_end=1, rtol=1e-11)
+    assert json.loads(state)["t"] == json.loads(run.info["state"])["t"] == 1
+    later = swing.run(t_end=1.5, step=0.5, start=state, rtol=1e-11)
+    assert later["t"][0] == 1 and math.isclose(later["x"][-1], 0.1 * math.cos(7.5), abs_tol=1e-9)
+    with pytest.raises(ValueError, match="dt -1: must be a finite number above 0"):
+        swing.step(state, -1)
+    with pytest.raises(ValueError, match='give "model", "equilibrium" or a state'):
+        swing.run(start="rest")
+    with pytest.raises(ValueError, match="start: "):
+        swing.step('{"t": 1}')
+
+
+PUSHED = """
+graph Pushed {
+    param mass: kg = 2, above 0;
+    input push: N;
+    1 slide: translation; Se drive = push; I body = mass;
+    drive -> slide; slide -> body;
+    observe { v: m/s = slide.flow }
+}
+"""
+
+
+def test_inputs_hold_for_one_step():
+    pushed, state = bg.compile(PUSHED), None
+    for push, speed in ((2, 0.5), (0, 0.5), (-4, -0.5)):
+        state, outputs = pushed.step(state, 0.5, inputs={"push": push})
+        assert math.isclose(outputs["v"], speed, abs_tol=1e-9)
+
+
+def test_a_gradient_is_that_of_the_closed_form():
+    swing = bg.compile(SWING)
+    value, slopes = swing.gradient("x", t_end=1, rtol=1e-11)
+    assert math.isclose(value, 0.1 * math.cos(5), abs_tol=1e-9)
+    by_rate = -0.1 * math.sin(5)
+    assert math.isclose(slopes["stiffness"], by_rate * 5 / (2 * 50), abs_tol=1e-9)
+    assert math.isclose(slopes["mass"], -by_rate * 5 / (2 * 2), abs_tol=1e-9)
+    integral, slopes = swing.gradient("x", integral=True, by=["mass"], t_end=1, rtol=1e-11)
+    assert math.isclose(integral, 0.02 * math.sin(5), abs_tol=1e-9) and list(slopes) == ["mass"]
+    with pytest.raises(ValueError, match="at and integral"):
+        swing.gradient("x", at=0.5, integral=True)
+
+
+def test_parameters_are_identified(tmp_path: pathlib.Path):
+    swing = bg.compile(SWING)
+    measured = swing.run(t_end=2, step=0.05, stiffness=60, rtol=1e-10)
+    columns = {name: measured[name] for name in ("t", "x")}
+    (tmp_path / "measured.csv").write_text("\n".join(["t,x", *(f"{t},{x}" for t, x in zip(*columns.values()))]))
+    for data in (measured, columns, tmp_path / "measured.csv"):
+        found = swing.identify(data, "stiffness", bounds="stiffness=20..200")
+        assert math.isclose(found["parameters"][0]["value"], 60, rel_tol=1e-6)
+    with pytest.raises(ValueError, match="has no parameter `k`"):
+        swing.identify(columns, "k")
+    with pytest.raises(ValueError, match="the column `x` has 1 values, another one 2"):
+        swing.identify({"t": [0, 1], "x": [1]}, "stiffness")
+
+
+def test_graph_and_report_are_shown(tmp_path: pathlib.Path):
+    swing = bg.compile(SWING)
+    assert swing.graph().svg.startswith("<svg") and "spring" in swing.graph().svg
+    page = swing.report(t_end=1)
+    assert page.html.startswith("<!DOCTYPE html>") and page._repr_html_().startswith('<iframe srcdoc="')
+    page.save(tmp_path / "swing.html")
+    assert (tmp_path / "swing.html").read_text() == page.html
+
+
+def test_a_table_goes_where_others_want_it():
+    run = bg.compile(SWING).run(t_end=1, step=0.05)
+    assert [name for name, _ in run.items()] == run.keys() == ["t", "x", "v"]
+    assert all(np.array_equal(values, run[name]) for name, values in run.items())
+    again = pickle.loads(pickle.dumps(run))
+    assert np.array_equal(again["x"], run["x"]) and again.units == run.units and again.info["state"] == run.info["state"]
+    html = run._repr_html_()
+    assert "<th>x<br><small>m</small></th>" in html and "3 columns, 21 rows" in html and html.count("<tr>") == 1 + 10 + 1
+
+
+def test_a_table_is_a_stream_of_arrow():
+    pyarrow = pytest.importorskip("pyarrow")
+    run = bg.compile(SWING).run(t_end=1, step=0.05)
+    assert np.array_equal(pyarrow.table(run)["x"].to_numpy(), run["x"])
+
+
+def test_the_stubs_have_what_the_module_has():
+    stubs = pathlib.Path(bg.__file__).with_suffix(".pyi").read_text()
+    for name in bg.__all__:
+        assert f"def {name}(" in stubs or f"class {name}" in stubs or f"{name}:" in stubs, name
+    for of in (bg.Model, bg.Table, bg.Picture, bg.Page):
+        described = stubs.split(f"class {of.__name__}:")[1].split("\nclass ")[0]
+        for name in (name for name in vars(of) if not name.startswith("__")):
+            assert f"def {name}(" in described or f"{name}:" in described, f"{of.__name__}.{name}"
+            assert name.startswith("_repr_") or getattr(of, name).__doc__, f"{of.__name__}.{name}"
+
+
+def test_the_notebook_runs():
+    """Its cells without a notebook; what they gave is saved in it."""
+    notebook = json.loads((pathlib.Path(__file__).parents[1] / "examples/press.ipynb").read_text())
+    names = {}
+    for cell in (cell for cell in notebook["cells"] if cell["cell_type"] == "code"):
+        assert cell["outputs"], cell["source"]
+        exec("".join(cell["source"]), names)
+    saved = next(cell["outputs"][0] for cell in notebook["cells"] if "angles.append" in "".join(cell["source"]))
+    assert np.allclose(eval("".join(saved["data"]["text/plain"])), names["angles"], atol=1e-6)

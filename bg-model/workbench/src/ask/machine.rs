@@ -154,7 +154,7 @@ impl dyn Machine + '_ {
         self.simulation(Request::default(), from).start()
     }
 
-    /// Makes a run from there, and tells `told` the time reached, s, after each step.
+    /// Makes a run from there, and tells `told` the time reached, s, after each step; where it breaks, the run ends.
     ///
     /// # Errors
     /// As for its start, or the run stops before its end.
@@ -162,13 +162,9 @@ impl dyn Machine + '_ {
         &self,
         request: Request,
         from: Option<&State>,
-        told: &mut dyn FnMut(f64),
+        told: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Trajectory, RunError> {
-        let each_step = |t| {
-            told(t);
-            ControlFlow::Continue(())
-        };
-        self.simulation(request, from).each_step(each_step).run()
+        self.simulation(request, from).each_step(told).run()
     }
 
     /// What pictures show at `t` (s) and the state `x`: a value for each result of the drawing.

@@ -8,39 +8,37 @@ use std::path::PathBuf;
 
 use bg_model::description::ParameterInfo;
 use bg_model::run::Trajectory;
+use bg_model::sensitivity::Objective;
 use bg_model::simulation::Recording;
 use thiserror::Error;
 
 use super::arguments::LinearizeArguments;
+use super::gradient::only;
 use super::linearize::{check_time, space as linearised};
-use super::sensitivity::derivatives;
-use super::{campbell, plot};
+use super::sensitivity::{adjustable, derivatives};
+use super::{campbell, identify, plot};
 use crate::ask::inputs::{self, Named};
 use crate::ask::parameters::{self, Chosen, number};
 use crate::ask::request::Integration;
 use crate::ask::scenes::{Scene, own_values};
+use crate::live::{Order, whole_report};
 use crate::program::Program;
-use crate::run::running::{Begin, follow};
+use crate::run::running::{follow, going_on};
+use crate::show::picture;
 use crate::show::signals::Drawing;
+use crate::studies::identify::data::read;
+use crate::studies::identify::report;
 use crate::studies::optimize::{self, Optimum, Sought, Trial};
 use crate::studies::sensitivity::Course;
 use crate::studies::sweep::campbell::Campbell;
 use bg_analysis::linear::StateSpace;
 
+pub use crate::run::running::Begin;
+
 /// What cannot be done, in a sentence.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("{0}")]
 pub struct Refused(String);
-
-/// Where a run begins.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Started {
-    /// At the model's own start.
-    #[default]
-    Model,
-    /// At the equilibrium near it.
-    Equilibrium,
-}
 
 /// What is asked for.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -54,7 +52,7 @@ pub struct Asked {
     /// How it is integrated.
     pub integration: Integration,
     /// Where it begins.
-    pub start: Started,
+    pub start: Begin,
 }
 
 /// A run that was made.
@@ -108,20 +106,16 @@ pub fn outputs(program: &Program, scene: Option<&str>) -> Result<Vec<(String, St
     Ok(scene.description.outputs.iter().map(|output| (output.name.to_owned(), output.unit.to_owned())).collect())
 }
 
-/// Makes the run, as far as it goes.
+/// Makes the run, as far as it goes; `told` is asked after each step whether to go on.
 ///
 /// # Errors
 /// It cannot be made.
-pub fn run(program: &Program, asked: &Asked) -> Result<Ran, Refused> {
-    let request = asked.integration.request(0.0, None).map_err(refused)?;
+pub fn run(program: &Program, asked: &Asked, told: &dyn Fn() -> bool) -> Result<Ran, Refused> {
+    let request = asked.integration.request(asked.start.time(), None).map_err(refused)?;
     let Given { scene, chosen, inputs } = given(program, asked)?;
-    let begin = match asked.start {
-        Started::Model => Begin::Model,
-        Started::Equilibrium => Begin::Equilibrium,
-    };
     let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
-    let from = begin.state(&*machine).map_err(refused)?;
-    let outcome = follow(&*machine, request, from.as_ref(), |_| ()).map_err(refused)?;
+    let from = asked.start.state(&*machine).map_err(refused)?;
+    let outcome = follow(&*machine, request, from.as_ref(), |_| going_on(told())).map_err(refused)?;
     Ok(Ran { run: outcome.run, failure: outcome.failure, inputs })
 }
 
@@ -149,6 +143,105 @@ pub fn sensitivity(
     let Given { scene, chosen, inputs } = given(program, asked)?;
     let (run, courses) = derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)?;
     Ok((Ran { run, failure: None, inputs }, courses))
+}
+
+/// One number of a run, whose derivatives [`gradient`] gives.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Number {
+    /// The output.
+    pub output: String,
+    /// When, s; else at the end.
+    pub at: Option<f64>,
+    /// Its integral over the run instead.
+    pub is_integral: bool,
+}
+
+/// A number of a run with its derivatives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gradient {
+    /// The number, in the output's unit, or times s.
+    pub value: f64,
+    /// Its derivative by each parameter, by name; SI units.
+    pub by: Vec<(&'static str, f64)>,
+}
+
+/// How one number depends on the parameters `by`, without names on all that the scene leaves adjustable: by the run
+/// followed backwards.
+///
+/// # Errors
+/// It cannot be made, or has no derivatives.
+pub fn gradient(program: &Program, asked: &Asked, of: &Number, by: &[String]) -> Result<Gradient, Refused> {
+    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let Given { scene, chosen, .. } = given(program, asked)?;
+    let (output, _) = only(scene, &of.output).map_err(refused)?;
+    check_time("at", of.at).map_err(refused)?;
+    let objective = match (of.at, of.is_integral) {
+        (_, true) => Objective::integral(output),
+        (Some(t), _) => Objective::at(output, t),
+        (None, _) => Objective::last(output),
+    };
+    let by: Vec<&'static str> =
+        adjustable(scene, &chosen, by, "by").map_err(refused)?.iter().map(|(info, _)| info.name).collect();
+    let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
+    let found = machine.known("gradients", machine.gradient(&request, &objective, &by)).map_err(refused)?;
+    let found = found.map_err(refused)?;
+    Ok(Gradient { value: found.value, by: by.into_iter().zip(found.by).collect() })
+}
+
+/// What is fitted to what.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fit {
+    /// What was measured: the text of a CSV file, the first column `t`, in s, the others named as outputs.
+    pub data: String,
+    /// The parameters.
+    pub parameters: Vec<String>,
+    /// Their bounds, `NAME=LOWER..UPPER`, where they are narrower than their ranges.
+    pub bounds: Vec<String>,
+    /// Which outputs columns measure that have other names, `NAME=OUTPUT`.
+    pub columns: Vec<String>,
+}
+
+/// The parameters with which outputs are nearest to what was measured, as `identify --json` gives them.
+///
+/// # Errors
+/// It cannot be sought, or no fit came about.
+pub fn identify(program: &Program, asked: &Asked, fit: &Fit) -> Result<serde_json::Value, Refused> {
+    let Given { scene, chosen, .. } = given(program, asked)?;
+    let variables = identify::variables(scene, &chosen, &fit.parameters, &fit.bounds).map_err(refused)?;
+    let named = identify::columns(scene, &fit.columns).map_err(refused)?;
+    let outputs = scene.description.outputs;
+    let data = read(fit.data.as_bytes(), outputs, &named, &[]).map_err(refused)?;
+    let t_end = data.times.last().copied().unwrap_or_default();
+    let integration = Integration { t_end, step: t_end, ..asked.integration.clone() };
+    let request = integration.request(0.0, None).map_err(refused)?;
+    let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
+    let found = machine.identified(&request, &data, &variables, &mut |_, _| ());
+    let found = machine.known("derivatives by parameters", found).map_err(refused)?.map_err(refused)?;
+    Ok(report::json(&found, &data, outputs))
+}
+
+/// The picture of a scene's bond graph: SVG.
+///
+/// # Errors
+/// No such scene.
+pub fn graph(program: &Program, scene: Option<&str>) -> Result<String, Refused> {
+    Ok(picture::svg(program.find_scene(scene).map_err(Refused)?.description))
+}
+
+/// The report of a run, HTML in one file; `told` is asked after each step whether to go on.
+///
+/// # Errors
+/// It cannot be made.
+pub fn page(program: &Program, asked: &Asked, told: &dyn Fn() -> bool) -> Result<String, Refused> {
+    let Given { scene, .. } = given(program, asked)?;
+    let order = Order {
+        scene: scene.name.clone(),
+        parameters: asked.set.clone(),
+        inputs: inputs::settings(&asked.inputs, program.models.graph().description.inputs).map_err(refused)?,
+        integration: asked.integration.clone(),
+        begin: asked.start.clone(),
+    };
+    whole_report(program, &order, told).map_err(Refused)
 }
 
 /// The parameters with which what `goals` asks for is least or largest; `told` is asked after each run whether to go on.
@@ -185,17 +278,23 @@ pub fn campbell(
     check_time("at", at).map_err(refused)?;
     let Given { scene, chosen, .. } = given(program, asked)?;
     let what = campbell::asked(scene, by, points.max(2), orders, None).map_err(refused)?;
-    let place = at.or((asked.start == Started::Model).then_some(0.0));
+    let place = at.or((asked.start == Begin::Model).then_some(0.0));
     let integration = |t| LinearizeArguments::of_scene(&scene.name).integration(t);
     campbell::followed(program, scene, &chosen, what, (place, &integration), &|| ()).map_err(refused)
 }
 
 /// A picture of a run: `v over x`, `spectrum of x`, `orders of x over angle`, or a signal over time; other runs and
-/// measurements in CSV files beside it. SVG.
+/// measurements in CSV files beside it. SVG. `told` is asked after each step whether to go on; what there is then is drawn.
 ///
 /// # Errors
 /// It cannot be drawn.
-pub fn plot(program: &Program, asked: &Asked, picture: &str, others: &[PathBuf]) -> Result<String, Refused> {
+pub fn plot(
+    program: &Program,
+    asked: &Asked,
+    picture: &str,
+    others: &[PathBuf],
+    told: &dyn Fn() -> bool,
+) -> Result<String, Refused> {
     let Given { scene, chosen, .. } = given(program, asked)?;
     let drawing = Drawing::read(scene.description, picture).map_err(|fault| refused(format!("{picture}: {fault}")))?;
     let others = plot::others(others, scene.description).map_err(refused)?;
@@ -205,7 +304,7 @@ pub fn plot(program: &Program, asked: &Asked, picture: &str, others: &[PathBuf])
     let own = own_values(scene, &program.models.scenes, &chosen.values).map_err(refused)?;
     let mut integration = asked.integration.clone();
     integration.step = integration.step.min(integration.t_end / plot::SAMPLES);
-    let Ran { run: trajectory, failure, .. } = run(program, &Asked { integration, ..asked.clone() })?;
+    let Ran { run: trajectory, failure, .. } = run(program, &Asked { integration, ..asked.clone() }, told)?;
     if let Some(failure) = failure {
         return Err(refused(format!("the run failed: {failure}")));
     }

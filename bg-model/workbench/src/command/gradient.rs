@@ -130,7 +130,7 @@ fn question<'a>(
 }
 
 /// The output of this name, which has no components.
-fn only(scene: &Scene, name: &str) -> Result<(usize, &'static OutputInfo), InputError> {
+pub(super) fn only(scene: &Scene, name: &str) -> Result<(usize, &'static OutputInfo), InputError> {
     let found = observed(scene, &[name.to_owned()], "--of")?;
     let [output] = found[..] else {
         let names: Vec<&str> = found.iter().map(|(_, output)| output.name).collect();

@@ -15,7 +15,7 @@ use super::run::{chosen, machine, request};
 use super::sensitivity::{adjustable, observed, unknown};
 use super::{InputError, ended};
 use crate::ask::inputs;
-use crate::ask::parameters::bounds;
+use crate::ask::parameters::{Chosen, bounds};
 use crate::ask::scenes::Scene;
 use crate::files::{FileError, RunFolder, console};
 use crate::program::Program;
@@ -78,11 +78,8 @@ pub fn identify(program: &Program, arguments: &IdentifyArguments) -> Result<Exit
     let (chosen, named_inputs) = chosen(program, &arguments.model)?;
     let scene = program.scene_called(&arguments.model.scene);
     let outputs = scene.description.outputs;
-    let mut variables: Vec<Variable> =
-        adjustable(scene, &chosen, &arguments.fit, "--fit")?.into_iter().map(variable).collect();
-    arguments.bounds.iter().try_for_each(|text| bound(&mut variables, text, &scene.name))?;
-    let named = arguments.column.iter().map(|text| pair(text, outputs)).collect::<Result<Vec<_>, _>>();
-    let named = named.map_err(|fault| InputError::Unknown { option: "--column", fault })?;
+    let variables = variables(scene, &chosen, &arguments.fit, &arguments.bounds)?;
+    let named = columns(scene, &arguments.column)?;
     let only: Vec<usize> = match arguments.outputs.as_slice() {
         [] => Vec::new(),
         names => observed(scene, names, "--output")?.into_iter().map(|(place, _)| place).collect(),
@@ -114,6 +111,24 @@ pub fn identify(program: &Program, arguments: &IdentifyArguments) -> Result<Exit
     };
     let faults = faults.iter().map(ToString::to_string).chain(printed.err().map(|fault| fault.to_string()));
     Ok(ended(faults.chain(unfinished)))
+}
+
+/// The parameters of these names, with their bounds.
+pub(super) fn variables(
+    scene: &Scene,
+    chosen: &Chosen,
+    names: &[String],
+    bounds: &[String],
+) -> Result<Vec<Variable>, InputError> {
+    let mut variables: Vec<Variable> = adjustable(scene, chosen, names, "--fit")?.into_iter().map(variable).collect();
+    bounds.iter().try_for_each(|text| bound(&mut variables, text, &scene.name))?;
+    Ok(variables)
+}
+
+/// The columns that have other names than the outputs that they measure.
+pub(super) fn columns(scene: &Scene, pairs: &[String]) -> Result<Vec<(String, usize)>, InputError> {
+    let named = pairs.iter().map(|text| pair(text, scene.description.outputs)).collect::<Result<Vec<_>, _>>();
+    named.map_err(|fault| InputError::Unknown { option: "--column", fault })
 }
 
 fn variable((info, start): (&'static ParameterInfo, f64)) -> Variable {

@@ -1,5 +1,6 @@
 //! The command `run`: a scene integrated, its files written, its summary printed.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -162,7 +163,11 @@ pub fn machine(program: &Program, scene: &Scene, chosen: &Chosen) -> Result<Box<
 /// is no error.
 pub fn follow(machine: &dyn Machine, request: Request, from: Option<&State>) -> Result<Outcome, RunError> {
     let bar = over_time(request.t_end);
-    let outcome = running::follow(machine, request, from, |t| bar.set_position(ticks(t)));
+    let told = |t| {
+        bar.set_position(ticks(t));
+        ControlFlow::Continue(())
+    };
+    let outcome = running::follow(machine, request, from, told);
     bar.finish_and_clear();
     outcome
 }

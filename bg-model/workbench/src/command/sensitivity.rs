@@ -1,5 +1,6 @@
 //! The command `sensitivity`: which parameter moves which output, as table, CSV and figure.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -204,7 +205,7 @@ pub fn derivatives(
 /// When the outputs of a run are least and largest, s.
 fn instants_of_peaks(machine: &dyn Machine, request: &Request) -> Result<Vec<f64>, InputError> {
     let without_samples = Request { peaks: true, samples: Samples::At(Vec::new()), ..request.clone() };
-    let run = machine.run(without_samples, None, &mut |_| ())?;
+    let run = machine.run(without_samples, None, &mut |_| ControlFlow::Continue(()))?;
     let peaks = run.columns.iter().filter_map(|column| column.peaks);
     // At the instant of an event a sample is the side before it.
     let both_sides = |t: f64| [t, t.next_up()].into_iter().filter(|t| *t <= request.t_end);

@@ -25,9 +25,11 @@ use crate::ask::parameters::{Values, number};
 use crate::ask::request::{Integration, RequestError};
 use crate::ask::scenes::Scene;
 use crate::program::Program;
-use crate::run::running::{BeginError, Outcome, follow};
+use crate::run::running::{BeginError, Outcome, follow, going_on};
 use crate::run::summary::{Check, Summary};
 use crate::show::page::film::Film;
+#[cfg(not(target_arch = "wasm32"))]
+use crate::show::page::page;
 use crate::show::page::{Balance, Bonds, Data, Parameter, Report, page_beside};
 use crate::show::picture;
 
@@ -90,7 +92,7 @@ struct Shown {
 /// built for.
 #[must_use]
 pub fn answer(program: &Program, text: &str) -> String {
-    let shown = |order: Order| Ok(made(program, &order)?.shown()?);
+    let shown = |order: Order| Ok(made(program, &order, &|| true)?.shown()?);
     told(serde_json::from_str(text).map_err(Refusal::from).and_then(shown))
 }
 
@@ -100,8 +102,18 @@ pub fn answer(program: &Program, text: &str) -> String {
 /// # Errors
 /// Why there is no such run: a sentence.
 pub fn report(program: &Program, order: &Order) -> Result<String, String> {
-    let page = |made: Made<'_>| Ok(made.page(order)?);
-    made(program, order).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
+    let page = |made: Made<'_>| Ok(made.page(|report| page_beside(report, order))?);
+    made(program, order, &|| true).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
+}
+
+/// The same in one file with all that it needs, without sliders; `told` is asked after each step whether to go on.
+///
+/// # Errors
+/// Why there is no such run: a sentence.
+#[cfg(not(target_arch = "wasm32"))]
+pub fn whole_report(program: &Program, order: &Order, told: &dyn Fn() -> bool) -> Result<String, String> {
+    let page = |made: Made<'_>| Ok(made.page(page)?);
+    made(program, order, told).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
 }
 
 #[cfg(target_arch = "wasm32")]
@@ -136,8 +148,8 @@ struct Made<'a> {
     inputs: Vec<Named>,
 }
 
-/// Runs a scene as it is asked for.
-fn made<'a>(program: &'a Program, order: &Order) -> Result<Made<'a>, Refusal> {
+/// Runs a scene as it is asked for; `told` is asked after each step whether to go on.
+fn made<'a>(program: &'a Program, order: &Order, told: &dyn Fn() -> bool) -> Result<Made<'a>, Refusal> {
     let models = &program.models;
     let scene = models.named(&order.scene).filter(|scene| models.maker().has(scene.index));
     let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
@@ -151,7 +163,7 @@ fn made<'a>(program: &'a Program, order: &Order) -> Result<Made<'a>, Refusal> {
     request.settled = program.extras.settled();
     request.parts.push(Part::Shown);
     let from = order.begin.state(&*machine)?;
-    let mut outcome = follow(&*machine, request, from.as_ref(), |_| ())?;
+    let mut outcome = follow(&*machine, request, from.as_ref(), |_| going_on(told()))?;
     Ok(Made {
         program,
         scene,
@@ -195,8 +207,8 @@ impl Made<'_> {
         })
     }
 
-    /// It as a page in a frame of another page.
-    fn page(&self, order: &Order) -> Result<String, MissingColumn> {
+    /// It as a page.
+    fn page(&self, page: impl FnOnce(&Report<'_>) -> String) -> Result<String, MissingColumn> {
         let Self { program, scene, outcome: Outcome { run, .. }, film, rows, values, .. } = self;
         let rows = run.at(rows).times;
         let report = Report {
@@ -213,7 +225,7 @@ impl Made<'_> {
             views: &film.views(None, picture::svg(scene.description)),
             live: None,
         };
-        Ok(page_beside(&report, order))
+        Ok(page(&report))
     }
 }
 

@@ -3,6 +3,8 @@
 //! In: a model, what is asked of the run, where it begins. Out: what it reached. The command line and a page make their
 //! runs here.
 
+use std::ops::ControlFlow;
+
 use bg_model::run::{Request, RunError, State, Stopped, Trajectory};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -74,8 +76,13 @@ pub fn at_rest(machine: &dyn Machine) -> Result<(State, Equilibrium), BeginError
     Ok((state, rest))
 }
 
+/// What a run is told that goes on, or ends here.
+pub const fn going_on(is: bool) -> ControlFlow<()> {
+    if is { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+}
+
 /// Makes the run from the state `from`, or from the model's own start, and tells `told` the time reached, s, after each
-/// step. One that stops before its end is no error.
+/// step; where it breaks, the run ends. One that stops before its end is no error.
 ///
 /// # Errors
 /// The run cannot start.
@@ -83,7 +90,7 @@ pub fn follow(
     machine: &dyn Machine,
     request: Request,
     from: Option<&State>,
-    mut told: impl FnMut(f64),
+    mut told: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Outcome, RunError> {
     match machine.run(request, from, &mut told) {
         Ok(run) => Ok(Outcome { run, failure: None }),

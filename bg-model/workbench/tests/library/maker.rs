@@ -68,15 +68,20 @@ fn runs_and_tables_are_those_of_the_compiled_mechanism() {
     assert_eq!(calls::scenes(&bare), calls::scenes(&compiled));
     assert_eq!(calls::parameters(&bare, Some("place")), calls::parameters(&compiled, Some("place")));
     for scene in ["literal", "place"] {
-        let [ours, theirs] = [&bare, &compiled].map(|program| calls::run(program, &asked(scene)).unwrap().run);
+        let [ours, theirs] =
+            [&bare, &compiled].map(|program| calls::run(program, &asked(scene), &|| true).unwrap().run);
         assert_eq!((ours.recording, ours.last), (theirs.recording, theirs.last), "{scene}");
     }
     let order = r#"{ "scene": "literal", "parameters": { "mass": 3.0 }, "inputs": [], "begin": "model", "integration":
         { "t_end": 1.0, "step": 0.1, "method": "auto", "rtol": 1e-8, "atol": null, "fixed_step": 1e-4 } }"#;
     assert_eq!(live::answer(&bare, order), live::answer(&compiled, order));
-    let range = calls::run(&bare, &Asked { set: [("mass".to_owned(), -1.0)].into_iter().collect(), ..asked("place") });
+    let range =
+        calls::run(&bare, &Asked { set: [("mass".to_owned(), -1.0)].into_iter().collect(), ..asked("place") }, &|| {
+            true
+        });
     assert!(range.unwrap_err().to_string().contains("parameter `mass` = -1 kg is out of range"));
-    let fixed = calls::run(&bare, &Asked { set: [("k".to_owned(), 1.0)].into_iter().collect(), ..asked("place") });
+    let fixed =
+        calls::run(&bare, &Asked { set: [("k".to_owned(), 1.0)].into_iter().collect(), ..asked("place") }, &|| true);
     assert_eq!(fixed.unwrap_err().to_string(), "scene `place` keeps `k` fixed at 50 N/m; use --scene literal");
 }
 

@@ -19,6 +19,6 @@ Parameters have SI units: ``swing.parameters()`` has their names, units and rang
 each at its place; what cannot be raises ``ValueError`` with a sentence, a run that stops before its end ``RunFailed``.
 """
 
-from ._bond_graph import FaultError, Model, Picture, RunFailed, Table, __version__, compile, load
+from ._bond_graph import FaultError, Model, Page, Picture, RunFailed, Table, __version__, compile, load
 
-__all__ = ["FaultError", "Model", "Picture", "RunFailed", "Table", "__version__", "compile", "load"]
+__all__ = ["FaultError", "Model", "Page", "Picture", "RunFailed", "Table", "__version__", "compile", "load"]

@@ -1,6 +1,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, Literal, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -27,13 +27,32 @@ class Table:
     """How it was made and what it took; `info["inputs"]` has of each input its unit, `is_given`, and `value` or `table`;
     `info["hint"]` is the method by which `auto` made most of it, for `run(.., hint=..)`, None after another method."""
 
-    def __getitem__(self, name: str) -> npt.NDArray[np.float64]: ...
+    def __getitem__(self, name: str) -> Any:
+        """A NumPy array; of names a list of texts."""
     def __contains__(self, name: str) -> bool: ...
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[str]: ...
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object: ...
+    def _repr_html_(self) -> str: ...
     def keys(self) -> list[str]: ...
+    def values(self) -> list[Any]: ...
+    def items(self) -> list[tuple[str, Any]]: ...
     def to_pandas(self) -> Any: ...
     def to_polars(self) -> Any: ...
+
+class Picture:
+    """A picture, which a notebook shows."""
+
+    svg: str
+    def save(self, path: str | PathLike[str]) -> None: ...
+    def _repr_svg_(self) -> str: ...
+
+class Page:
+    """A page, which a notebook shows."""
+
+    html: str
+    def save(self, path: str | PathLike[str]) -> None: ...
+    def _repr_html_(self) -> str: ...
 
 class Parameter(TypedDict):
     default: float
@@ -67,13 +86,70 @@ class Model:
         rtol: float | None = None,
         atol: float | None = None,
         fixed_step: float | None = None,
-        start: Literal["model", "equilibrium"] = "model",
+        start: str = "model",
         inputs: Mapping[str, float | str] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> Table:
         """Run the model; parameters are keyword arguments, SI units. ``hint`` is what ``auto`` begins with: a name, the
         ``info["hint"]`` of a run before, or its summary.json."""
+
+    def step(
+        self,
+        state: str | None = None,
+        dt: float = 0.01,
+        scene: str | None = None,
+        *,
+        method: str | None = None,
+        hint: str | PathLike[str] | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        fixed_step: float | None = None,
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> tuple[str, dict[str, float]]:
+        """Go on by ``dt`` s from a state: the next state, and the outputs there by name. A state is the ``info["state"]`` of a
+        run; without one it begins at the model's own start."""
+
+    def plot(
+        self,
+        picture: str,
+        scene: str | None = None,
+        *,
+        others: Sequence[str | PathLike[str]] | None = None,
+        t_end: float | None = None,
+        step: float | None = None,
+        method: str | None = None,
+        hint: str | PathLike[str] | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        start: str = "model",
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> Picture:
+        """Run the model and draw "v over x", "spectrum of x", "orders of torque over crank.angle", or a signal over time."""
+
+    def graph(self, scene: str | None = None) -> Picture:
+        """The bond graph of a scene, with its causal strokes."""
+
+    def report(
+        self,
+        scene: str | None = None,
+        *,
+        t_end: float | None = None,
+        step: float | None = None,
+        method: str | None = None,
+        hint: str | PathLike[str] | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        start: str = "model",
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> Page:
+        """Run the model and show all of it: the machine in motion, charts, energy balance, the bond graph."""
 
     def linearize(
         self,
@@ -85,6 +161,21 @@ class Model:
         **parameters: float,
     ) -> dict[str, Any]:
         """Linearise where the run is at ``at`` s, or at the equilibrium near the start."""
+
+    def campbell(
+        self,
+        by: str,
+        scene: str | None = None,
+        *,
+        points: int = 61,
+        orders: Sequence[float] | None = None,
+        at: float | None = None,
+        start: str = "model",
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> dict[str, Any]:
+        """Natural frequencies over a parameter, "speed=0..12000": ``modes``, ``critical_speeds``, ``picture``."""
 
     def sensitivity(
         self,
@@ -103,6 +194,42 @@ class Model:
         **parameters: float,
     ) -> Table:
         """A column ``d(output)/d(parameter)`` over the run for each of the outputs and each parameter in ``by``."""
+
+    def gradient(
+        self,
+        of: str,
+        scene: str | None = None,
+        *,
+        at: float | None = None,
+        integral: bool = False,
+        by: Sequence[str] | None = None,
+        t_end: float | None = None,
+        step: float | None = None,
+        method: str | None = None,
+        hint: str | PathLike[str] | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> tuple[float, dict[str, float]]:
+        """The output ``of`` at the end, at ``at`` s, or its integral; with its derivatives by the parameters in ``by``."""
+
+    def identify(
+        self,
+        data: str | PathLike[str] | Mapping[str, Sequence[float] | npt.NDArray[np.float64]] | Table,
+        fit: str | Sequence[str],
+        scene: str | None = None,
+        *,
+        bounds: str | Sequence[str] | None = None,
+        columns: str | Sequence[str] | None = None,
+        method: str | None = None,
+        rtol: float | None = None,
+        inputs: Mapping[str, float | str] | None = None,
+        set: Mapping[str, float] | None = None,
+        **parameters: float,
+    ) -> dict[str, Any]:
+        """Fit parameters to what was measured: ``parameters`` with value and interval, what the ``columns`` leave."""
 
     def optimize(
         self,

@@ -2,6 +2,8 @@
 //!
 //! In: what was recorded, and the mechanism of now. Out: the run that the record asks for, or why there is none.
 
+use std::ops::ControlFlow;
+
 use bg_model::input::Input;
 use bg_model::run::{Request, RunError, Trajectory};
 use thiserror::Error;
@@ -62,6 +64,6 @@ impl<'a> Prepared<'a> {
     /// Makes the run.
     pub fn run(&self) -> Result<Trajectory, RunFault> {
         let machine = self.models.made(self.scene, &self.parameters, &self.inputs)?;
-        Ok(machine.run(self.request.clone(), None, &mut |_| ())?)
+        Ok(machine.run(self.request.clone(), None, &mut |_| ControlFlow::Continue(()))?)
     }
 }

@@ -3,6 +3,8 @@
 //! In: case, integrator, tolerance or step. Out: its true errors against the reference and what it cost. Times are of
 //! the run with the outputs at the reference's instants, without the building of the model.
 
+use std::ops::ControlFlow;
+
 use bg_model::integrator::Integrator;
 use bg_model::run::{Request, RunError, Trajectory};
 use bg_model::simulation::{Recording, Samples};
@@ -176,6 +178,6 @@ fn request(method: Integrator, setting: Setting, reference: &Recording) -> Reque
 
 /// One run; where it fails what it reached, and why.
 fn once(machine: &dyn Machine, request: &Request) -> Result<(Trajectory, Option<String>), RunError> {
-    let Outcome { run, failure } = follow(machine, request.clone(), None, |_| ())?;
+    let Outcome { run, failure } = follow(machine, request.clone(), None, |_| ControlFlow::Continue(()))?;
     Ok((run, failure))
 }

@@ -3,6 +3,7 @@
 //! In: a plan, the number of a run. Out: its row, be it one of a run that failed, and its trajectory if wanted; rows as
 //! tables.
 
+use std::ops::ControlFlow;
 use std::ops::Range;
 
 use bg_model::description::{Description, ParameterInfo};
@@ -48,7 +49,7 @@ pub fn run(asked: Asked<'_>, begin: &Begin, values: &[f64]) -> Result<Outcome, S
     let Asked { models, scene, inputs, request } = asked;
     let machine = models.made(scene, &asked.all(values), inputs).map_err(|fault| fault.to_string())?;
     let from = begin.state(&*machine).map_err(|fault| fault.to_string())?;
-    follow(&*machine, request.clone(), from.as_ref(), |_| ()).map_err(|fault| fault.to_string())
+    follow(&*machine, request.clone(), from.as_ref(), |_| ControlFlow::Continue(())).map_err(|fault| fault.to_string())
 }
 
 /// The same with numbers of it: none of a run that has not come to its end.
