@@ -11,7 +11,7 @@
 //! |---|---|
 //! | [`model`] | what the module's functions are |
 //! | [`table`] | what they give: columns by name |
-//! | [`waiting`] | how Ctrl-C reaches what runs without Python |
+//! | [`waiting`] | how Ctrl-C reaches what runs without Python, and how far it is |
 //!
 //! Numbers are moved into NumPy arrays, not copied. While a model runs, other Python threads do.
 

@@ -24,7 +24,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::table::{Table, Values};
-use crate::waiting::interruptible;
+use crate::waiting::{Seen, interruptible};
 
 pyo3::create_exception!(
     bg_python,
@@ -79,11 +79,14 @@ impl Source {
 }
 
 impl Work {
-    /// Does it as long as `goes_on` says so.
-    fn done(&self, program: &Program, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, String> {
+    /// Does it as long as who waits for it says so.
+    fn done(&self, program: &Program, seen: &Seen) -> Result<Outcome, String> {
         let plan = self.plan.read(program)?;
         let folder = Folder::claim(&self.out, &recipe::of(program, &plan)).map_err(|fault| fault.to_string())?;
-        sweep(program, &plan, &folder, self.share, self.threads, &|_, _| goes_on()).map_err(|fault| fault.to_string())
+        sweep(program, &plan, &folder, self.share, self.threads, &|done, all| {
+            seen.done(done as f64 / all.max(1) as f64)
+        })
+        .map_err(|fault| fault.to_string())
     }
 }
 
@@ -208,7 +211,8 @@ impl Model {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let mut ran = interruptible(py, |goes_on| calls::run(&(self.program)(), &asked, goes_on))?.map_err(refused)?;
+        let mut ran = interruptible(py, |seen| calls::run(&(self.program)(), &asked, &|part| seen.done(part)))?
+            .map_err(refused)?;
         let failure = ran.failure.take();
         let table = table(py, ran)?;
         match failure {
@@ -246,7 +250,8 @@ impl Model {
         let t_end = asked.start.time() + dt;
         integrated(&mut asked, Some(t_end), Some(dt), method, hint, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let mut ran = interruptible(py, |goes_on| calls::run(&(self.program)(), &asked, goes_on))?.map_err(refused)?;
+        let mut ran = interruptible(py, |seen| calls::run(&(self.program)(), &asked, &|part| seen.done(part)))?
+            .map_err(refused)?;
         if let Some(failure) = ran.failure.take() {
             return Err(run_failed(py, &failure, table(py, ran)?)?);
         }
@@ -284,7 +289,9 @@ impl Model {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         let others = others.unwrap_or_default();
-        let svg = interruptible(py, |goes_on| calls::plot(&(self.program)(), &asked, picture, &others, goes_on))?;
+        let svg = interruptible(py, |seen| {
+            calls::plot(&(self.program)(), &asked, picture, &others, &|part| seen.done(part))
+        })?;
         Ok(Picture { svg: svg.map_err(refused)? })
     }
 
@@ -317,7 +324,7 @@ impl Model {
     ) -> PyResult<Page> {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
-        let html = interruptible(py, |goes_on| calls::page(&(self.program)(), &asked, goes_on))?;
+        let html = interruptible(py, |seen| calls::page(&(self.program)(), &asked, &|part| seen.done(part)))?;
         Ok(Page { html: html.map_err(refused)? })
     }
 
@@ -520,7 +527,7 @@ impl Model {
         let [minimize, maximize, subject, by] =
             [minimize, maximize, subject, by].map(|texts| texts.map_or_else(Vec::new, Texts::all));
         let goals = optimize::Asked { minimize, maximize, subject, by, starts, points, steps, threads };
-        let found = interruptible(py, |goes_on| calls::optimize(&(self.program)(), &asked, &goals, goes_on))?;
+        let found = interruptible(py, |seen| calls::optimize(&(self.program)(), &asked, &goals, &|| seen.goes_on()))?;
         let (sought, found) = found.map_err(refused)?;
         let told = py.import("json")?.call_method1("loads", (optimize::report::json(&sought, &found).to_string(),))?;
         told.set_item("trials", of_parquet(py, optimize::report::trials(&sought, &found), PyDict::new(py))?)?;
@@ -577,7 +584,7 @@ impl Model {
             || PyValueError::new_err(format!("shard {shard:?}: give (i, n), the i-th of n parts, counted from 1"));
         let share = Share::new(shard.0, shard.1).ok_or_else(none)?;
         let work = Work { plan: source(plan)?, out, share, threads };
-        let outcome = interruptible(py, |goes_on| work.done(&(self.program)(), goes_on))?.map_err(refused)?;
+        let outcome = interruptible(py, |seen| work.done(&(self.program)(), seen))?.map_err(refused)?;
         let counts = PyDict::new(py);
         counts.set_item("runs", outcome.runs)?;
         counts.set_item("made", outcome.made_runs)?;

@@ -57,7 +57,7 @@ def test_parameters_change_the_run_and_have_units_and_ranges():
         ({"t_end": -1}, "t_end -1: must be a finite number above 0"),
         ({"method": "euler"}, "method: there is no integrator `euler`"),
         ({"hint": "best"}, 'hint "best": give one of dop853, cfmr7, nystrom, taylor, ark5, radau9, or the summary.json'),
-        ({"start": "there"}, 'start "there": give "model" or "equilibrium"'),
+        ({"start": "there"}, 'start "there": give "model", "equilibrium" or a state'),
         ({"inputs": {"force": 3}}, "there is no input `force`"),
     ],
 )
@@ -197,7 +197,7 @@ def test_ctrl_c_ends_a_sweep_between_runs(tmp_path):
     assert not [path for path in (tmp_path / "c").iterdir() if path.suffix == ".unfinished"]
 
 
-@pytest.mark.parametrize("call", ["run('motion', t_end=1e5)", "plot('speed', 'motion', t_end=1e5)"])
+@pytest.mark.parametrize("call", ["run('rigid', t_end=1e5, step=10)", "plot('crank_speed', 'rigid', t_end=1e5)"])
 def test_ctrl_c_ends_a_run(call):
     ended = interrupted(f"hacksaw.{call}")
     assert ended.stdout == "ended\n", ended.stderr

@@ -23,7 +23,7 @@ use crate::ask::request::Integration;
 use crate::ask::scenes::{Scene, own_values};
 use crate::live::{Order, whole_report};
 use crate::program::Program;
-use crate::run::running::{follow, going_on};
+use crate::run::running::{follow, going_on, part_done};
 use crate::show::picture;
 use crate::show::signals::Drawing;
 use crate::studies::identify::data::read;
@@ -66,6 +66,10 @@ pub struct Ran {
     pub inputs: Vec<Named>,
 }
 
+/// Is told after each step of a run which part of it is done, 0 to 1, and says whether to go on; where not, the run ends
+/// there.
+pub type Told<'a> = &'a dyn Fn(f64) -> bool;
+
 fn refused(fault: impl std::fmt::Display) -> Refused {
     Refused(fault.to_string())
 }
@@ -106,16 +110,17 @@ pub fn outputs(program: &Program, scene: Option<&str>) -> Result<Vec<(String, St
     Ok(scene.description.outputs.iter().map(|output| (output.name.to_owned(), output.unit.to_owned())).collect())
 }
 
-/// Makes the run, as far as it goes; `told` is asked after each step whether to go on.
+/// Makes the run, as far as it goes.
 ///
 /// # Errors
 /// It cannot be made.
-pub fn run(program: &Program, asked: &Asked, told: &dyn Fn() -> bool) -> Result<Ran, Refused> {
+pub fn run(program: &Program, asked: &Asked, told: Told<'_>) -> Result<Ran, Refused> {
     let request = asked.integration.request(asked.start.time(), None).map_err(refused)?;
     let Given { scene, chosen, inputs } = given(program, asked)?;
     let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
     let from = asked.start.state(&*machine).map_err(refused)?;
-    let outcome = follow(&*machine, request, from.as_ref(), |_| going_on(told())).map_err(refused)?;
+    let part = part_done(&asked.start, request.t_end);
+    let outcome = follow(&*machine, request, from.as_ref(), |t| going_on(told(part(t)))).map_err(refused)?;
     Ok(Ran { run: outcome.run, failure: outcome.failure, inputs })
 }
 
@@ -228,11 +233,11 @@ pub fn graph(program: &Program, scene: Option<&str>) -> Result<String, Refused> 
     Ok(picture::svg(program.find_scene(scene).map_err(Refused)?.description))
 }
 
-/// The report of a run, HTML in one file; `told` is asked after each step whether to go on.
+/// The report of a run, HTML in one file.
 ///
 /// # Errors
 /// It cannot be made.
-pub fn page(program: &Program, asked: &Asked, told: &dyn Fn() -> bool) -> Result<String, Refused> {
+pub fn page(program: &Program, asked: &Asked, told: Told<'_>) -> Result<String, Refused> {
     let Given { scene, .. } = given(program, asked)?;
     let order = Order {
         scene: scene.name.clone(),
@@ -284,7 +289,7 @@ pub fn campbell(
 }
 
 /// A picture of a run: `v over x`, `spectrum of x`, `orders of x over angle`, or a signal over time; other runs and
-/// measurements in CSV files beside it. SVG. `told` is asked after each step whether to go on; what there is then is drawn.
+/// measurements in CSV files beside it. SVG.
 ///
 /// # Errors
 /// It cannot be drawn.
@@ -293,7 +298,7 @@ pub fn plot(
     asked: &Asked,
     picture: &str,
     others: &[PathBuf],
-    told: &dyn Fn() -> bool,
+    told: Told<'_>,
 ) -> Result<String, Refused> {
     let Given { scene, chosen, .. } = given(program, asked)?;
     let drawing = Drawing::read(scene.description, picture).map_err(|fault| refused(format!("{picture}: {fault}")))?;

@@ -25,7 +25,7 @@ use crate::ask::parameters::{Values, number};
 use crate::ask::request::{Integration, RequestError};
 use crate::ask::scenes::Scene;
 use crate::program::Program;
-use crate::run::running::{BeginError, Outcome, follow, going_on};
+use crate::run::running::{BeginError, Outcome, follow, going_on, part_done};
 use crate::run::summary::{Check, Summary};
 use crate::show::page::film::Film;
 #[cfg(not(target_arch = "wasm32"))]
@@ -92,7 +92,7 @@ struct Shown {
 /// built for.
 #[must_use]
 pub fn answer(program: &Program, text: &str) -> String {
-    let shown = |order: Order| Ok(made(program, &order, &|| true)?.shown()?);
+    let shown = |order: Order| Ok(made(program, &order, &|_| true)?.shown()?);
     told(serde_json::from_str(text).map_err(Refusal::from).and_then(shown))
 }
 
@@ -103,15 +103,15 @@ pub fn answer(program: &Program, text: &str) -> String {
 /// Why there is no such run: a sentence.
 pub fn report(program: &Program, order: &Order) -> Result<String, String> {
     let page = |made: Made<'_>| Ok(made.page(|report| page_beside(report, order))?);
-    made(program, order, &|| true).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
+    made(program, order, &|_| true).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
 }
 
-/// The same in one file with all that it needs, without sliders; `told` is asked after each step whether to go on.
+/// The same in one file with all that it needs, without sliders; `told` is asked after each step, with the part that is done, whether to go on.
 ///
 /// # Errors
 /// Why there is no such run: a sentence.
 #[cfg(not(target_arch = "wasm32"))]
-pub fn whole_report(program: &Program, order: &Order, told: &dyn Fn() -> bool) -> Result<String, String> {
+pub fn whole_report(program: &Program, order: &Order, told: &dyn Fn(f64) -> bool) -> Result<String, String> {
     let page = |made: Made<'_>| Ok(made.page(page)?);
     made(program, order, told).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
 }
@@ -148,8 +148,8 @@ struct Made<'a> {
     inputs: Vec<Named>,
 }
 
-/// Runs a scene as it is asked for; `told` is asked after each step whether to go on.
-fn made<'a>(program: &'a Program, order: &Order, told: &dyn Fn() -> bool) -> Result<Made<'a>, Refusal> {
+/// Runs a scene as it is asked for; `told` is asked after each step, with the part that is done, whether to go on.
+fn made<'a>(program: &'a Program, order: &Order, told: &dyn Fn(f64) -> bool) -> Result<Made<'a>, Refusal> {
     let models = &program.models;
     let scene = models.named(&order.scene).filter(|scene| models.maker().has(scene.index));
     let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
@@ -163,7 +163,8 @@ fn made<'a>(program: &'a Program, order: &Order, told: &dyn Fn() -> bool) -> Res
     request.settled = program.extras.settled();
     request.parts.push(Part::Shown);
     let from = order.begin.state(&*machine)?;
-    let mut outcome = follow(&*machine, request, from.as_ref(), |_| going_on(told()))?;
+    let part = part_done(&order.begin, t_end);
+    let mut outcome = follow(&*machine, request, from.as_ref(), |t| going_on(told(part(t))))?;
     Ok(Made {
         program,
         scene,

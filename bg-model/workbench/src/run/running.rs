@@ -76,6 +76,12 @@ pub fn at_rest(machine: &dyn Machine) -> Result<(State, Equilibrium), BeginError
     Ok((state, rest))
 }
 
+/// The part of a run that is done at an instant, s, 0 to 1: of one from there until `t_end` (s).
+pub fn part_done(from: &Begin, t_end: f64) -> impl Fn(f64) -> f64 + use<> {
+    let t0 = from.time();
+    move |t| (t - t0) / (t_end - t0)
+}
+
 /// What a run is told that goes on, or ends here.
 pub const fn going_on(is: bool) -> ControlFlow<()> {
     if is { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }

@@ -69,7 +69,7 @@ fn runs_and_tables_are_those_of_the_compiled_mechanism() {
     assert_eq!(calls::parameters(&bare, Some("place")), calls::parameters(&compiled, Some("place")));
     for scene in ["literal", "place"] {
         let [ours, theirs] =
-            [&bare, &compiled].map(|program| calls::run(program, &asked(scene), &|| true).unwrap().run);
+            [&bare, &compiled].map(|program| calls::run(program, &asked(scene), &|_| true).unwrap().run);
         assert_eq!((ours.recording, ours.last), (theirs.recording, theirs.last), "{scene}");
     }
     let order = r#"{ "scene": "literal", "parameters": { "mass": 3.0 }, "inputs": [], "begin": "model", "integration":
@@ -81,7 +81,7 @@ fn runs_and_tables_are_those_of_the_compiled_mechanism() {
         });
     assert!(range.unwrap_err().to_string().contains("parameter `mass` = -1 kg is out of range"));
     let fixed =
-        calls::run(&bare, &Asked { set: [("k".to_owned(), 1.0)].into_iter().collect(), ..asked("place") }, &|| true);
+        calls::run(&bare, &Asked { set: [("k".to_owned(), 1.0)].into_iter().collect(), ..asked("place") }, &|_| true);
     assert_eq!(fixed.unwrap_err().to_string(), "scene `place` keeps `k` fixed at 50 N/m; use --scene literal");
 }
 
