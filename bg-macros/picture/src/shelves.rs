@@ -55,18 +55,17 @@ impl Shelves {
         }
         let moves = (4000 * count).min(20_000_000 / (count + self.links.len()));
         let mut random = Random::new(2);
-        let mut cost = self.cost(&rows);
+        let mut cost = self.cost(&rows, i64::MAX).expect("no cost is larger");
         let mut best = (cost, rows.clone());
         for step in 0..moves {
             let left = (moves - step) as i64;
             let threshold = FIRST_THRESHOLD * left * left / (moves as i64 * moves as i64);
             let before = rows.clone();
             shuffle(&mut rows, &mut random);
-            let after = self.cost(&rows);
-            if after > cost + threshold {
+            let Some(after) = self.cost(&rows, cost + threshold) else {
                 rows = before;
                 continue;
-            }
+            };
             cost = after;
             if cost < best.0 {
                 best = (cost, rows.clone());
@@ -97,20 +96,22 @@ impl Shelves {
         row.iter().map(|&group| self.sizes[group].0 + self.gap).sum::<i32>() - self.gap
     }
 
-    /// Length of the links, and the size of the sheet, which is best one and a half times as wide as high.
-    fn cost(&self, rows: &Rows) -> i64 {
+    /// Length of the links, and the size of the sheet, which is best one and a half times as wide as high; none where
+    /// it is more than `most`.
+    fn cost(&self, rows: &Rows, most: i64) -> Option<i64> {
         const SIZE: i64 = 12;
         let corners = self.corners(rows);
         let far = |of: &dyn Fn(usize) -> i32| (0..self.sizes.len()).map(of).max().unwrap_or_default();
         let width = far(&|group| corners[group].0 + self.sizes[group].0);
         let height = far(&|group| corners[group].1 + self.sizes[group].1);
         let links: i64 = self.links.iter().map(|link| length(link, &corners)).sum();
-        links + SIZE * i64::from(width.max(height * 3 / 2)) + self.disorder(&corners)
+        let apart = links + SIZE * i64::from(width.max(height * 3 / 2));
+        Some(apart + self.disorder(&corners, most.checked_sub(apart).filter(|&rest| rest >= 0)?)?)
     }
 
     /// How much links run over groups and across each other, if each were a straight line between the middles of two
-    /// groups.
-    fn disorder(&self, corners: &[Point]) -> i64 {
+    /// groups; none where it is more than `most`.
+    fn disorder(&self, corners: &[Point], most: i64) -> Option<i64> {
         const OVER_GROUP: i64 = 40;
         const CROSSING: i64 = 40;
         let middle =
@@ -121,13 +122,22 @@ impl Shelves {
             let others = (0..self.sizes.len()).filter(|&group| group != a && group != b);
             let is_under = |group: &usize| {
                 let ((x, y), (width, height)) = (corners[*group], self.sizes[*group]);
-                cross(line, [(x, y), (x + width, y + height)]) || cross(line, [(x + width, y), (x, y + height)])
+                let (right, bottom) = (x + width, y + height);
+                // Where all of a line is on one side of a group nothing can cross.
+                let is_beside = line.iter().all(|end| end.0 < x)
+                    || line.iter().all(|end| end.0 > right)
+                    || line.iter().all(|end| end.1 < y)
+                    || line.iter().all(|end| end.1 > bottom);
+                !is_beside && (cross(line, [(x, y), (right, bottom)]) || cross(line, [(right, y), (x, bottom)]))
             };
             cost += OVER_GROUP * others.filter(is_under).count() as i64;
             let apart = self.pairs[..index].iter().filter(|&&(c, d)| ![a, b].contains(&c) && ![a, b].contains(&d));
             cost += CROSSING * apart.filter(|&&(c, d)| cross(line, [middle(c), middle(d)])).count() as i64;
+            if cost > most {
+                return None;
+            }
         }
-        cost
+        Some(cost)
     }
 
     /// Moves one group within its place in a row to where its links cost least.

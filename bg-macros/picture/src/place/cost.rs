@@ -27,20 +27,30 @@ pub(super) struct Load {
 }
 
 impl Board<'_> {
-    /// The cost of the drawing as it stands.
-    pub(super) fn cost(&mut self) -> i64 {
+    /// The cost of the drawing as it stands; none where it is more than `most`. No part of it is negative, so those that
+    /// are quick to find come first: most drawings are found too dear by them.
+    pub(super) fn cost(&mut self, most: i64) -> Option<i64> {
+        let apart: i64 = self.problem.links.iter().map(|&link| self.shape_cost(link)).sum();
+        let mut cost = apart + self.straightness() + self.frame_cost();
+        if cost > most {
+            return None;
+        }
         self.loads.fill(Load::default());
         for block in 0..self.cells.len() {
             let index = self.index(self.cells[block]);
             self.loads[index].is_taken = true;
         }
-        let links: i64 = (0..self.problem.links.len()).map(|link| self.link_cost(link)).sum();
-        links + self.straightness() + self.frame_cost()
+        for &(from, to) in &self.problem.links {
+            cost += self.meeting_cost(self.cells[from], self.cells[to]);
+            if cost > most {
+                return None;
+            }
+        }
+        Some(cost)
     }
 
-    /// The cost of a link along the better of its routes, which it then occupies.
-    fn link_cost(&mut self, link: usize) -> i64 {
-        let (from, to) = self.problem.links[link];
+    /// What a link costs wherever the others run.
+    fn shape_cost(&self, (from, to): (usize, usize)) -> i64 {
         let (a, b) = (self.cells[from], self.cells[to]);
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let mut cost = LENGTH * i64::from(dx.abs() + dy.abs());
@@ -48,8 +58,13 @@ impl Board<'_> {
         if dx == 0 && [from, to].iter().all(|&end| self.neighbours[end].len() > 1) {
             cost += STEEP;
         }
-        if dx == 0 || dy == 0 {
-            cost += self.run_cost(a, b);
+        if dx == 0 || dy == 0 { cost } else { cost + BEND }
+    }
+
+    /// What a link meets along the better of its routes, which it then occupies.
+    fn meeting_cost(&mut self, a: Cell, b: Cell) -> i64 {
+        if a.0 == b.0 || a.1 == b.1 {
+            let cost = self.run_cost(a, b);
             self.occupy(a, b);
             return cost;
         }
@@ -62,29 +77,33 @@ impl Board<'_> {
         let corner = corners[usize::from(second < first)];
         self.occupy(a, corner);
         self.occupy(corner, b);
-        cost + BEND + first.min(second)
+        first.min(second)
     }
 
     /// What a straight run meets between its ends.
     fn run_cost(&self, a: Cell, b: Cell) -> i64 {
-        let mut cost = 0;
         let is_across = a.1 == b.1;
-        each_between(a, b, |cell| {
-            let load = self.loads[self.index(cell)];
+        let cost = |place: usize| {
+            let load = self.loads[place];
             let (along, over) = if is_across { (load.across, load.down) } else { (load.down, load.across) };
-            cost +=
-                OVERLAP * i64::from(along) + CROSSING * i64::from(over) + if load.is_taken { OVER_BLOCK } else { 0 };
-        });
-        cost
+            OVERLAP * i64::from(along) + CROSSING * i64::from(over) + if load.is_taken { OVER_BLOCK } else { 0 }
+        };
+        self.between(a, b).map(cost).sum()
     }
 
     fn occupy(&mut self, a: Cell, b: Cell) {
-        let (side, is_across) = (self.side, a.1 == b.1);
-        let loads = &mut self.loads;
-        each_between(a, b, |(x, y)| {
-            let load = &mut loads[(y * side + x) as usize];
+        let is_across = a.1 == b.1;
+        for place in self.between(a, b) {
+            let load = &mut self.loads[place];
             if is_across { load.across += 1 } else { load.down += 1 }
-        });
+        }
+    }
+
+    /// The places of the cells strictly between `a` and `b`, which are in one row or column.
+    fn between(&self, a: Cell, b: Cell) -> impl Iterator<Item = usize> + use<> {
+        let (first, last) = (self.index(a).min(self.index(b)), self.index(a).max(self.index(b)));
+        let step = if a.1 == b.1 { 1 } else { self.side as usize };
+        (first..last).step_by(step).skip(1)
     }
 
     fn straightness(&self) -> i64 {
@@ -117,15 +136,5 @@ impl Board<'_> {
             cost += PULL * i64::from(distance(to_right, x, left, right) + distance(down, y, top, bottom));
         }
         cost
-    }
-}
-
-/// Calls `each` for the cells strictly between `a` and `b`, which are in one row or column.
-fn each_between(a: Cell, b: Cell, mut each: impl FnMut(Cell)) {
-    let (dx, dy) = ((b.0 - a.0).signum(), (b.1 - a.1).signum());
-    let (mut x, mut y) = (a.0 + dx, a.1 + dy);
-    while (x, y) != b && (dx, dy) != (0, 0) {
-        each((x, y));
-        (x, y) = (x + dx, y + dy);
     }
 }

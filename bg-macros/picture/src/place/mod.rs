@@ -151,7 +151,7 @@ impl<'a> Board<'a> {
         let weight = 8 * (count + self.problem.links.len());
         let moves = (moves * count).min(EFFORT / weight);
         let mut random = Random::new(1);
-        let mut cost = self.cost();
+        let mut cost = self.whole_cost();
         let mut best = (cost, self.cells.clone());
         let mut before = self.cells.clone();
         for step in 0..moves {
@@ -161,17 +161,20 @@ impl<'a> Board<'a> {
             if !self.shake(&mut random) {
                 continue;
             }
-            let after = self.cost();
-            if after > cost + threshold {
+            let Some(after) = self.cost(cost + threshold) else {
                 self.cells.clone_from(&before);
                 continue;
-            }
+            };
             cost = after;
             if cost < best.0 {
                 best = (cost, self.cells.clone());
             }
         }
         self.cells = best.1;
+    }
+
+    fn whole_cost(&mut self) -> i64 {
+        self.cost(i64::MAX).expect("no cost is larger")
     }
 
     /// Mirrors all where that reads better: left to right, with the links that leave.
@@ -186,7 +189,7 @@ impl<'a> Board<'a> {
                 *x = if is_across { left + right - *x } else { *x };
                 *y = if is_down { top + bottom - *y } else { *y };
             }
-            (self.cost(), self.cells.clone())
+            (self.whole_cost(), self.cells.clone())
         });
         self.cells = turned.into_iter().min_by_key(|(cost, _)| *cost).map_or(own, |(_, cells)| cells);
     }
