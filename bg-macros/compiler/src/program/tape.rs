@@ -67,14 +67,14 @@ impl Writer<'_> {
             }
             Node::Sum { constant, terms } => {
                 let mut words = vec![6, self.number(*constant), count(terms.len())];
-                for (id, coefficient) in terms {
+                for (id, coefficient) in terms.iter() {
                     words.extend([self.steps[id], self.number(*coefficient)]);
                 }
                 words
             }
             Node::Product(factors) => {
                 let mut words = vec![7, count(factors.len())];
-                for (id, exponent) in factors {
+                for (id, exponent) in factors.iter() {
                     words.extend([self.steps[id], exponent.cast_unsigned()]);
                 }
                 words

@@ -70,7 +70,7 @@ impl Expansion<'_> {
             Node::Sum { constant, terms } => {
                 let (mut sum, constant) = (Terms::new(), self.pool.number(constant.value()));
                 self.include(&mut sum, (0, None), constant)?;
-                for (term, coefficient) in &terms {
+                for (term, coefficient) in terms.iter() {
                     for (key, factor) in self.terms(*term) {
                         let factor = self.pool.scale(coefficient.value(), factor);
                         self.include(&mut sum, key, factor)?;

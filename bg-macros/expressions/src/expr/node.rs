@@ -2,6 +2,8 @@
 //!
 //! In: nothing. Out: the types that [`super::Pool`] stores.
 
+use std::sync::Arc;
+
 /// A node of a [`super::Pool`].
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub struct Id(pub(super) u32);
@@ -157,7 +159,7 @@ impl std::hash::Hash for Number {
     }
 }
 
-/// What a node is.
+/// What a node is. A pool has each one twice, so copies share what is long.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Node {
     /// A number.
@@ -169,12 +171,12 @@ pub enum Node {
         /// The constant.
         constant: Number,
         /// Nodes with their coefficients.
-        terms: Box<[(Id, Number)]>,
+        terms: Arc<[(Id, Number)]>,
     },
     /// Product of node^exponent; factors sorted by node, no exponent zero, no node a number or a product.
-    Product(Box<[(Id, i32)]>),
+    Product(Arc<[(Id, i32)]>),
     /// A function.
-    Call(Function, Box<[Id]>),
+    Call(Function, Arc<[Id]>),
     /// `negative` where the switch's guard is below zero, `positive` elsewhere.
     Select {
         /// The switch's index.

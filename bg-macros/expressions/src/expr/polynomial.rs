@@ -104,7 +104,7 @@ impl<'p> Expansion<'p> {
             Node::Sum { constant, terms } => self.sum(constant.value(), &terms),
             Node::Product(factors) => {
                 let mut product = constant(1.0);
-                for &(base, exponent) in &factors {
+                for &(base, exponent) in factors.iter() {
                     let base = self.take(base);
                     product = self.times_power(product, &base, exponent)?;
                 }

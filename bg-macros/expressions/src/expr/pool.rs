@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 
 use super::{Id, Node, Number, Symbol};
 
@@ -87,16 +87,23 @@ impl Pool {
     /// All nodes that the roots are made of, the roots included; ascending, so children come before parents.
     #[must_use]
     pub fn reachable(&self, roots: &[Id]) -> Vec<Id> {
-        let mut seen = FxHashSet::default();
+        // A bit for each node up to the last root, whose children are below it: a walk downwards meets parents first.
+        let Some(last) = roots.iter().max() else { return Vec::new() };
+        let mut seen = vec![0_u64; last.0 as usize / 64 + 1];
+        let mark = |seen: &mut Vec<u64>, Id(id): Id| seen[id as usize / 64] |= 1 << (id % 64);
+        roots.iter().for_each(|&root| mark(&mut seen, root));
         let mut found = Vec::new();
-        let mut pending = roots.to_vec();
-        while let Some(id) = pending.pop() {
-            if seen.insert(id) {
+        for word in (0..seen.len()).rev() {
+            let mut below = u64::MAX;
+            while seen[word] & below != 0 {
+                let bit = (seen[word] & below).ilog2();
+                below = (1 << bit) - 1;
+                let id = Id(64 * u32::try_from(word).expect("a pool has fewer than 2^32 nodes") + bit);
                 found.push(id);
-                pending.extend(children(self.node(id)));
+                children(self.node(id)).for_each(|child| mark(&mut seen, child));
             }
         }
-        found.sort_unstable();
+        found.reverse();
         found
     }
 
@@ -215,7 +222,7 @@ mod tests {
                 }
                 Node::Product(factors) => {
                     assert!(factors.iter().map(|(id, _)| id).is_sorted_by(|a, b| a < b));
-                    for (id, exponent) in factors {
+                    for (id, exponent) in factors.iter() {
                         let is_root = matches!(pool.node(*id), Node::Call(Function::Sqrt, _));
                         assert!(*exponent != 0 && pool.as_scaled(*id).is_none() && pool.as_number(*id).is_none());
                         assert!(!matches!(pool.node(*id), Node::Product(_)) && (!is_root || exponent.abs() == 1));

@@ -7,6 +7,7 @@
 //! exponents never overflow.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::{Function, Id, Node, Pool};
 
@@ -84,7 +85,7 @@ impl Pool {
         match self.node(id) {
             Node::Number(number) => draft.coefficient *= number.value().powi(exponent),
             Node::Product(factors) => {
-                for &(base, inner) in factors {
+                for &(base, inner) in factors.iter() {
                     draft.multiply(base, inner.saturating_mul(exponent));
                 }
             }
@@ -127,7 +128,7 @@ impl Pool {
 
     fn complete(&mut self, draft: Draft) -> Id {
         let draft = self.without_large_powers(draft);
-        let factors: Box<[_]> = draft.factors.into_iter().collect();
+        let factors: Arc<[_]> = draft.factors.into_iter().collect();
         let product = match *factors {
             [] => return self.number(draft.coefficient),
             [(base, 1)] => base,

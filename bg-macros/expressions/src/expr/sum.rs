@@ -67,6 +67,11 @@ impl Pool {
 
     /// `constant` plus the sum of node times coefficient. A coefficient 0 removes its term, whatever the node.
     pub fn linear(&mut self, constant: f64, terms: &[(Id, f64)]) -> Id {
+        if let (&[(id, coefficient)], true) = (terms, constant == 0.0)
+            && let Some(scaled) = self.scaled_alone(id, coefficient)
+        {
+            return scaled;
+        }
         let mut draft = Draft { constant, terms: BTreeMap::new() };
         for &(id, coefficient) in terms {
             self.include(&mut draft, id, coefficient);
@@ -75,6 +80,25 @@ impl Pool {
             self.flatten(&mut draft, id);
         }
         self.finish(&draft)
+    }
+
+    /// `coefficient * id`, where that is quick to say: nothing merges with one term, unless its addends vanish.
+    fn scaled_alone(&mut self, id: Id, coefficient: f64) -> Option<Id> {
+        if coefficient == 0.0 || self.as_number(id).is_some() {
+            return None;
+        }
+        let (node, total) = self.as_scaled(id).map_or((id, coefficient), |(node, factor)| (node, coefficient * factor));
+        let vanishes = |(constant, terms): (f64, &[(Id, Number)])| {
+            (constant != 0.0 && total * constant == 0.0) || terms.iter().any(|(_, inner)| total * inner.value() == 0.0)
+        };
+        if total == 0.0 || self.as_addends(node).is_some_and(vanishes) {
+            return None;
+        }
+        if total == 1.0 {
+            return Some(node);
+        }
+        let terms = [(node, Number::new(total))].into();
+        Some(self.intern(Node::Sum { constant: Number::new(0.0), terms }))
     }
 
     /// The node and its coefficient, where this is a scaled node.
@@ -123,6 +147,9 @@ impl Pool {
     /// The last inner sum with an addend that merges with the outer sum, or cancels against other inner sums.
     fn merging(&self, draft: &Draft) -> Option<Id> {
         let inner: Vec<_> = draft.terms.iter().filter_map(|(&id, &c)| Some((id, c, self.as_addends(id)?))).collect();
+        if inner.is_empty() {
+            return None;
+        }
         let mut totals: BTreeMap<Id, f64> = BTreeMap::new();
         let mut constants = 0.0;
         for (_, factor, (constant, terms)) in &inner {
@@ -240,6 +267,18 @@ mod tests {
         let double = pool.scale(2.0, sum);
         assert_eq!(*pool.node(double), node(0.0, &[(sum, 2.0)]));
         assert_eq!(pool.scale(-0.5, double), pool.neg(sum));
+    }
+
+    #[test]
+    fn an_addend_that_a_scale_makes_zero_is_left_out() {
+        let mut pool = Pool::new();
+        let [x, y, ..] = letters(&mut pool);
+        let sum = pool.linear(0.0, &[(x, 1e-200), (y, 1.0)]);
+        assert_eq!(pool.scale(1e-200, sum), pool.scale(1e-200, y));
+        let shifted = pool.linear(1e-200, &[(y, 1.0)]);
+        assert_eq!(pool.scale(-1e-200, shifted), pool.scale(-1e-200, y));
+        let small = pool.scale(1e-200, x);
+        assert_eq!(pool.scale(1e-200, small), pool.zero());
     }
 
     #[test]

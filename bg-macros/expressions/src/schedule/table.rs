@@ -24,7 +24,10 @@ impl<T> Default for Store<T> {
 impl<T: Clone + Eq + Hash> Store<T> {
     /// The index of this item.
     pub(super) fn intern(&mut self, item: T) -> u32 {
-        self.intern_as(item.clone(), item)
+        match self.index.get(&item) {
+            Some(&known) => known,
+            None => self.intern_as(item.clone(), item),
+        }
     }
 
     /// The index of this item, which is equal to others of the same key.

@@ -212,7 +212,7 @@ fn flat(pool: &Pool, id: Id) -> (f64, Vec<(Id, f64)>) {
         Node::Number(number) => (number.value(), Vec::new()),
         Node::Sum { constant, terms } => {
             let mut all = (constant.value(), Vec::new());
-            for (term, by) in terms {
+            for (term, by) in terms.iter() {
                 let (constant, terms) = flat(pool, *term);
                 all.0 += by.value() * constant;
                 all.1.extend(terms.into_iter().map(|(term, own)| (term, own * by.value())));
