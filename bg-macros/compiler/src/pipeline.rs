@@ -10,7 +10,7 @@ use crate::graph;
 use crate::graph::causality::{self, CausalGraph};
 use crate::program::elimination::{self, Elimination};
 use crate::program::{self, Counts, Deferred, Programs, deferred};
-use crate::source::ast::{Graph, Name, Source};
+use crate::source::ast::{Graph, Item, Name, Scene, Source};
 use crate::source::part::{self, Flattened};
 use crate::source::scene::{self, Variant};
 use crate::source::{mechanism, names};
@@ -100,7 +100,38 @@ pub fn models(source: &Source) -> Staged<Vec<Compiled>> {
 /// As [`models`].
 pub fn models_where(source: &Source, is_wanted: &dyn Fn(&str) -> bool) -> Staged<Vec<Known>> {
     let flattened = part::flatten(source)?;
-    of_graphs(&flattened, is_wanted).map_err(|faults| flattened.told(faults))
+    let of = |variant: &Variant, is_wanted: bool| {
+        if !is_wanted {
+            let derived = derive(&variant.graph)?;
+            return Ok((Known::Graph(Box::new(derived), variant.scenes.clone()), Vec::new()));
+        }
+        let model = compile(variant)?;
+        let adjustable = adjustable(&model.equations);
+        Ok((Known::Model(Box::new(model)), adjustable))
+    };
+    of_graphs(&flattened, is_wanted, &of).map_err(|faults| flattened.told(faults))
+}
+
+/// The graphs of a macro call, each with the number of its models, where none of these has a fault: of each as much is
+/// made as may have one.
+///
+/// # Errors
+/// As [`models`].
+pub fn check(source: &Source) -> Staged<Vec<(String, usize)>> {
+    let flattened = part::flatten(source)?;
+    let of = |variant: &Variant, _: bool| {
+        let equations = derive(&variant.graph)?.equations;
+        // A literal graph has none that come later.
+        let Some(scene) = &variant.scene else { return Ok(((), Vec::new())) };
+        let (equations, _) = reduced(scene, equations, false)?;
+        Ok(((), adjustable(&equations)))
+    };
+    of_graphs(&flattened, &|_| true, &of).map_err(|faults| flattened.told(faults))?;
+    let models = |graph: &Graph| {
+        let scenes = graph.items.iter().filter(|item| matches!(item, Item::Scene(_))).count();
+        (graph.name.text.clone(), scenes + usize::from(!scene::scenes_only(graph)))
+    };
+    Ok(flattened.source.graphs.iter().map(models).collect())
 }
 
 impl Compiled {
@@ -112,15 +143,17 @@ impl Compiled {
         let solved = ("substitute", self.elimination.substitution_counts());
         routines.chain([factored, solved]).collect()
     }
-
-    /// The model's name and the names of the parameters that it keeps adjustable.
-    fn adjustable(&self) -> (&Name, Vec<&str>) {
-        let parameters = self.equations.parameters.iter().map(|parameter| parameter.name.text.as_str());
-        (&self.source.name, parameters.collect())
-    }
 }
 
-fn of_graphs(flattened: &Flattened, is_wanted: &dyn Fn(&str) -> bool) -> Staged<Vec<Known>> {
+/// The names of the parameters that a model of these equations keeps adjustable.
+fn adjustable(equations: &StateEquations) -> Vec<String> {
+    equations.parameters.iter().map(|parameter| parameter.name.text.clone()).collect()
+}
+
+/// The stages of a model as far as is asked, with what [`adjustable`] gives of it; whether the model is wanted.
+type Stages<'a, T> = dyn Fn(&Variant, bool) -> Staged<(T, Vec<String>)> + 'a;
+
+fn of_graphs<T>(flattened: &Flattened, is_wanted: &dyn Fn(&str) -> bool, stages: &Stages<'_, T>) -> Staged<Vec<T>> {
     let mut models = Vec::new();
     let mut faults = names::check(&flattened.source).err().unwrap_or_default();
     flattened.unused.iter().for_each(|part| faults.extend(of_part(part)));
@@ -133,7 +166,9 @@ fn of_graphs(flattened: &Flattened, is_wanted: &dyn Fn(&str) -> bool) -> Staged<
                 if scenes_only || !wanted.contains(&true) {
                     wanted[usize::from(scenes_only)] = true;
                 }
-                each_variant(&variants, &wanted, scenes_only, &mut models, &mut faults);
+                let (found, faulty) = each_variant(&variants, &wanted, scenes_only, stages);
+                models.extend(found);
+                faults.extend(faulty);
             }
             Err(found) => faults.extend(found),
         }
@@ -153,40 +188,39 @@ fn of_part(part: &Graph) -> Faults {
     faults
 }
 
-fn each_variant(
+/// The models of a graph, and their faults. A fault of the literal graph is that of its scenes, too.
+fn each_variant<T>(
     variants: &[Variant],
     wanted: &[bool],
     scenes_only: bool,
-    models: &mut Vec<Known>,
-    faults: &mut Faults,
-) {
-    let before = models.len();
+    stages: &Stages<'_, T>,
+) -> (Vec<T>, Faults) {
+    let (mut models, mut faults) = (Vec::new(), Faults::new());
+    let mut adjustable: Vec<(&Name, Vec<String>)> = Vec::new();
     for (variant, &is_wanted) in variants.iter().zip(wanted) {
-        let compiled = match variant.scene {
+        let made = match variant.scene {
             None if scenes_only => derive(&variant.graph).map(|_| None),
-            None if !is_wanted => {
-                derive(&variant.graph).map(|derived| Some(Known::Graph(Box::new(derived), variant.scenes.clone())))
-            }
             Some(_) if !is_wanted => Ok(None),
-            _ => compile(variant).map(|model| Some(Known::Model(Box::new(model)))),
+            _ => stages(variant, is_wanted).map(Some),
         };
-        match compiled {
-            Ok(model) => models.extend(model),
+        match made {
+            Ok(None) => {}
+            Ok(Some((model, parameters))) => {
+                models.push(model);
+                adjustable.push((&variant.graph.name, parameters));
+            }
             Err(found) => {
                 faults.extend(found);
                 if variant.scene.is_none() {
-                    return;
+                    return (models, faults);
                 }
             }
         }
     }
-    let mut adjustable = models[before..].iter().filter_map(|known| match known {
-        Known::Model(model) => Some(model.adjustable()),
-        Known::Graph(..) => None,
-    });
-    if scenes_only && let Some(first) = adjustable.next() {
-        faults.extend(adjustable.filter_map(|other| scene::adjusts_more(other, first.clone())));
+    if scenes_only && let Some((first, others)) = adjustable.split_first() {
+        faults.extend(others.iter().filter_map(|other| scene::adjusts_more(other, first)));
     }
+    (models, faults)
 }
 
 /// The stages of one graph without scenes, as far as its state equations.
@@ -207,7 +241,15 @@ pub fn derive(graph: &Graph) -> Staged<Derived> {
 /// The faults of the first stage that has any.
 pub fn arrange(variant: &Variant) -> Staged<Arranged> {
     let derived = derive(&variant.graph)?;
-    let (mut equations, reduction) = reduced(variant, derived.equations.clone())?;
+    let mut equations = derived.equations.clone();
+    let mut reduction = None;
+    if let Some(scene) = &variant.scene {
+        let (reduced, report) = reduced(scene, equations, true)?;
+        (equations, reduction) = (reduced, Some(report));
+    } else {
+        reduce::count_turns(&mut equations);
+        reduce::solve_reactions(&mut equations);
+    }
     projection::complete(&mut equations);
     second_order::arrange(&mut equations);
     Ok(Arranged { derived, reduction, equations })
@@ -246,16 +288,51 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     })
 }
 
-/// The equations that the variant's model integrates: those of a scene reduced, with the report of it.
-fn reduced(variant: &Variant, mut equations: StateEquations) -> Staged<(StateEquations, Option<Report>)> {
-    let Some(scene) = &variant.scene else {
-        reduce::count_turns(&mut equations);
-        reduce::solve_reactions(&mut equations);
-        return Ok((equations, None));
-    };
+/// The equations reduced to what a scene needs, with the report of it; whether that is to have the operations of a rate
+/// after each reduction.
+fn reduced(scene: &Scene, equations: StateEquations, is_counted: bool) -> Staged<(StateEquations, Report)> {
     let wanted = expectation::wanted(scene, &equations)?;
-    let (mut equations, report) = reduce::for_scene(equations, &wanted, &mut program::rate_operations);
+    let (mut equations, report) = reduce::for_scene(equations, &wanted, is_counted, &mut program::rate_operations);
     expectation::check(scene, &report)?;
     equations.requirements.decide(&equations.parameters)?;
-    Ok((equations, Some(report)))
+    Ok((equations, report))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::source::syntax;
+
+    const GRAPH: &str = "graph G { param m: kg = 2; param k: N/m = 3; param size: m = 1, above 0;
+        1 j: translation; I mass = m start 1; C spring = k; j -> mass; j -> spring;
+        observe { v: m/s = j.flow; } ";
+
+    fn source(rest: &str) -> Source {
+        syntax::parse(format!("{GRAPH} {rest} }}").parse().expect("tokens")).expect("syntax")
+    }
+
+    #[test]
+    fn a_check_counts_models() {
+        let checked = |rest: &str| check(&source(rest)).expect("no faults");
+        assert_eq!(checked(""), [("G".to_owned(), 1)]);
+        assert_eq!(checked("scene A {} scene B { tune { m } }"), [("G".to_owned(), 3)]);
+        assert_eq!(checked("scenes only; scene A {} scene B { tune { m } }"), [("G".to_owned(), 2)]);
+    }
+
+    #[test]
+    fn a_check_finds_the_faults_of_a_compilation() {
+        let faulty = [
+            "scene A { expect states = 5; } scene B { expect states = 1; }",
+            "scene A { tune { mm } }",
+            "scene A { observe { x: m = spring.effort; } }",
+            "scenes only; scene A { tune { m } } scene B {}",
+            "scene A {} scene A {}",
+            "R broken; scene A { expect states = 5; }",
+        ];
+        for rest in faulty {
+            let text = |faults: Faults| faults.iter().map(ToString::to_string).collect::<Vec<_>>();
+            let checked = text(check(&source(rest)).expect_err(rest));
+            assert_eq!(checked, text(models(&source(rest)).expect_err(rest)), "{rest}");
+        }
+    }
 }

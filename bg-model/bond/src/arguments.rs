@@ -12,6 +12,7 @@ use clap::{Arg, ArgAction, ArgMatches, ColorChoice, Command, Error, FromArgMatch
 use clap_complete::Shell;
 
 use bg_workbench::command::colour;
+use bond_graph::text::Counted;
 
 use crate::served::Served;
 
@@ -322,7 +323,16 @@ pub fn again(options: &[OsString]) -> Option<PathBuf> {
 }
 
 /// The commands that ask for one scene.
-const OF_ONE_SCENE: [&str; 7] = ["run", "plot", "linearize", "sensitivity", "optimize", "identify", "fmu"];
+const OF_ONE_SCENE: [&str; 9] =
+    ["run", "report", "plot", "graph", "linearize", "sensitivity", "optimize", "identify", "fmu"];
+
+/// The commands that tell the operations of all programs.
+const OF_OPERATIONS: [&str; 2] = ["graph", "scene"];
+
+/// Of what a command tells the operations.
+pub fn counted(command: &[String]) -> Counted {
+    if command.iter().any(|word| OF_OPERATIONS.contains(&word.as_str())) { Counted::All } else { Counted::Made }
+}
 
 /// The only scene beside the one that stands for the graph that a command asks for; none where it may ask for all.
 pub fn only_scene(command: &[String], options: &[OsString]) -> Option<String> {

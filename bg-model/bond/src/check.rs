@@ -3,13 +3,11 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use bg_loaded::Graph;
 use bg_workbench::files::console;
 use bond_graph::{faults, file};
 
 /// Says the faults of all files; exit code 1 where there are any, 2 where a file cannot be read.
 pub fn check(files: &[PathBuf], json: bool, most: Option<usize>) -> ExitCode {
-    let wanted = file::Wanted { most, ..file::Wanted::default() };
     let mut code = 0;
     for path in files {
         let text = match file::read(path) {
@@ -20,7 +18,7 @@ pub fn check(files: &[PathBuf], json: bool, most: Option<usize>) -> ExitCode {
                 continue;
             }
         };
-        match file::graphs(&text, &wanted) {
+        match file::check(&text, most) {
             Ok(graphs) if json => drop(graphs),
             Ok(graphs) => say(&format!("{}: {}\n", text.path.display(), listed(&graphs)), &mut code),
             Err(faults) => {
@@ -33,8 +31,8 @@ pub fn check(files: &[PathBuf], json: bool, most: Option<usize>) -> ExitCode {
 }
 
 /// The graphs, each with the number of its models where it has several.
-fn listed(graphs: &[Graph]) -> String {
-    let one = |Graph { name, models, .. }: &Graph| match models.len() {
+fn listed(graphs: &[(String, usize)]) -> String {
+    let one = |(name, models): &(String, usize)| match models {
         1 => name.clone(),
         count => format!("{name} with {count} models"),
     };

@@ -11,12 +11,12 @@ use std::time::Duration;
 
 use bg_compiler::source::syntax::files::gather;
 use bg_import::{Format, Options, import_file};
-use bg_loaded::{Bundle, Fault, Graph, Opened, load_file, on_a_large_stack};
+use bg_loaded::{Bundle, Fault, Graph, Opened, check_file, load_file, on_a_large_stack};
 use bg_workbench::files::console;
 use thiserror::Error;
 
 use crate::text::DEEPEST;
-pub use crate::text::{Text, Wanted};
+pub use crate::text::{Counted, Text, Wanted};
 
 /// The largest file that is read, bytes: a mechanism of a thousand bodies has a tenth of it.
 const LARGEST: u64 = 8 << 20;
@@ -207,6 +207,18 @@ pub fn bundle(text: &Text) -> Bundle {
 /// The machine has no memory for a thread.
 pub fn graphs(text: &Text, wanted: &Wanted) -> Result<Vec<Graph>, Vec<Fault>> {
     on_a_large_stack(|| wanted.told(|wanted| load_file(&text.path, text.opened(), &open, wanted)))
+}
+
+/// The names of the graphs of a text, each with the number of its models, where none of these has a fault; `most` is how
+/// many statements a graph may have. Nothing is made of them.
+///
+/// # Errors
+/// As [`graphs`].
+///
+/// # Panics
+/// As [`graphs`].
+pub fn check(text: &Text, most: Option<usize>) -> Result<Vec<(String, usize)>, Vec<Fault>> {
+    on_a_large_stack(|| check_file(&text.path, text.opened(), &open, most))
 }
 
 #[cfg(test)]

@@ -90,7 +90,9 @@ fn program(Call { file, graph, is_interpreted, most, tables, command, options }:
         Ok(read) => read,
         Err(fault) => return refused(format!("--table: {fault}")),
     };
-    let wanted = file::Wanted { scene: arguments::only_scene(&command, &words.options()), most };
+    let scene = arguments::only_scene(&command, &words.options());
+    let counted = arguments::counted(&command);
+    let wanted = file::Wanted { scene, counted, most };
     let graphs = match file::graphs(&read, &wanted) {
         Ok(graphs) => graphs,
         Err(faults) => {

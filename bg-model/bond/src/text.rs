@@ -4,7 +4,8 @@
 
 use std::path::PathBuf;
 
-use bg_loaded::{Counted, Fault, Graph, load_wanted, with_points};
+pub use bg_loaded::Counted;
+use bg_loaded::{Fault, Graph, load_wanted, with_points};
 use bg_workbench::scenes::in_small_letters;
 use thiserror::Error;
 
@@ -110,9 +111,10 @@ impl Text {
 /// What is wanted of a text.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
-    /// Where one scene alone is wanted beside the one that stands for the graph, its name on the command line; only
-    /// what runs it is made.
+    /// Where one scene alone is wanted beside the one that stands for the graph, its name on the command line.
     pub scene: Option<String>,
+    /// Of what descriptions tell the operations: of all programs, unless only what runs is to be made.
+    pub counted: Counted,
     /// The most statements of a graph with its repetitions and parts written out; none: 20000.
     pub most: Option<usize>,
 }
@@ -120,10 +122,9 @@ pub struct Wanted {
 impl Wanted {
     /// The same, as the compiler asks for it, handed to `load`.
     pub fn told<T>(&self, load: impl FnOnce(bg_loaded::Wanted<'_>) -> T) -> T {
-        let Self { scene, most } = self;
-        let counted = if scene.is_some() { Counted::Made } else { Counted::All };
+        let Self { scene, counted, most } = self;
         let is_wanted = |name: &str| scene.as_ref().is_none_or(|scene| in_small_letters(name) == *scene);
-        load(bg_loaded::Wanted { scene: &is_wanted, counted, most: *most })
+        load(bg_loaded::Wanted { scene: &is_wanted, counted: *counted, most: *most })
     }
 }
 

@@ -21,6 +21,6 @@ pub use bundle::{Bundle, Chosen};
 pub use code::BackEnd;
 pub use interpreted::Interpreted;
 pub use text::{
-    Counted, Fault, Graph, Model, UsedFile, Wanted, load, load_file, load_wanted, macro_calls, on_a_large_stack,
-    syntax_faults,
+    Counted, Fault, Graph, Model, UsedFile, Wanted, check_file, load, load_file, load_wanted, macro_calls,
+    on_a_large_stack, syntax_faults,
 };

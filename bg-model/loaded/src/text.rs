@@ -118,6 +118,21 @@ pub fn load_file(path: &Path, first: Opened, open: Open<'_>, wanted: Wanted<'_>)
     graphs(&gathered, wanted).map_err(|faults| placed(&gathered, faults))
 }
 
+/// The same of the file at `path`, of which nothing is made: the names of its graphs, each with the number of its models.
+///
+/// # Errors
+/// As [`load`].
+pub fn check_file(
+    path: &Path,
+    first: Opened,
+    open: Open<'_>,
+    most: Option<usize>,
+) -> Result<Vec<(String, usize)>, Vec<Fault>> {
+    let gathered = files::gather(path, first, open);
+    let checked = parsed(&gathered, most).and_then(|source| pipeline::check(&source));
+    checked.map_err(|faults| placed(&gathered, faults))
+}
+
 /// The stack of the compiler, bytes: laws may be long.
 const STACK: usize = 1 << 28;
 
@@ -160,17 +175,23 @@ fn placed(gathered: &Gathered, faults: Vec<bg_compiler::fault::Fault>) -> Vec<Fa
     faults.into_iter().map(placed).collect()
 }
 
-fn graphs(gathered: &Gathered, wanted: Wanted<'_>) -> Staged<Vec<Graph>> {
+/// The graphs and parts of what has been gathered.
+fn parsed(gathered: &Gathered, most: Option<usize>) -> Staged<Source> {
     if !gathered.faults.is_empty() {
         return Err(gathered.faults.clone());
     }
     let tokens = gathered.tokens.clone();
     let calls = macro_calls(tokens.clone());
     let inside = calls.iter().map(Group::stream).collect();
-    let source = Source { most: wanted.most, ..syntax::parse(if calls.is_empty() { tokens } else { inside })? };
-    if let Some(path) = part::unasked(&source) {
-        return Err(vec![part::of_rust(path)]);
+    let source = Source { most, ..syntax::parse(if calls.is_empty() { tokens } else { inside })? };
+    match part::unasked(&source) {
+        Some(path) => Err(vec![part::of_rust(path)]),
+        None => Ok(source),
     }
+}
+
+fn graphs(gathered: &Gathered, wanted: Wanted<'_>) -> Staged<Vec<Graph>> {
+    let source = parsed(gathered, wanted.most)?;
     let compiled = pipeline::models_where(&source, wanted.scene)?;
     let mut graphs: Vec<Graph> = Vec::new();
     for known in compiled {

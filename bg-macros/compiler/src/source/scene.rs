@@ -119,8 +119,8 @@ fn no_scene(source: &Graph) -> Option<Fault> {
 /// The fault of a model that keeps a parameter adjustable which the first one does not: each with its name and
 /// parameters.
 #[must_use]
-pub fn adjusts_more((scene, own): (&Name, Vec<&str>), (first, of_first): (&Name, Vec<&str>)) -> Option<Fault> {
-    let name = own.into_iter().find(|name| !of_first.contains(name))?.to_owned();
+pub fn adjusts_more((scene, own): &(&Name, Vec<String>), (first, of_first): &(&Name, Vec<String>)) -> Option<Fault> {
+    let name = own.iter().find(|name| !of_first.contains(name))?.clone();
     let (own, first) = (scene.text.clone(), first.text.clone());
     Some(Fault::new(scene.span, &F::AdjustsMore { scene: own, name, first }))
 }

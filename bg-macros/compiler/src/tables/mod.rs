@@ -101,9 +101,10 @@ impl Loop {
 }
 
 /// Of which programs the operations are told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Counted {
     /// Of all.
+    #[default]
     All,
     /// Of those that are there without being asked for.
     Made,

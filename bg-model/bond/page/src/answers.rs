@@ -15,7 +15,7 @@ use bg_workbench::request::Integration;
 use bg_workbench::scenes::{Models, Scene};
 use bond_graph::faults::Line;
 use bond_graph::maker::Loaded;
-use bond_graph::text::{DEEPEST, Text, Wanted, graphs_alone};
+use bond_graph::text::{Counted, DEEPEST, Text, Wanted, graphs_alone};
 use serde::{Deserialize, Serialize};
 
 /// What the page asks. What is known of a text is answered as `{ "faults": [..], "graphs": [{ "name": .., "scenes": [{
@@ -127,10 +127,14 @@ impl Answerer {
     #[must_use]
     pub fn answer(&self, question: &str) -> String {
         match serde_json::from_str(question) {
-            Ok(Question::Check { text }) => self.checked(text, &Wanted::default(), None),
+            Ok(Question::Check { text }) => {
+                let wanted = Wanted { counted: Counted::Made, ..Wanted::default() };
+                self.checked(text, &wanted, None)
+            }
             Ok(Question::Compile { text, graph, scene }) => {
                 self.compiled.take();
-                let wanted = Wanted { scene: Some(scene.clone().unwrap_or_default()), most: None };
+                let scene = Some(scene.clone().unwrap_or_default());
+                let wanted = Wanted { scene, counted: Counted::Made, most: None };
                 self.checked(text, &wanted, Some((graph, scene)))
             }
             Ok(Question::Report(run)) => json(&self.told(|program, scene| {

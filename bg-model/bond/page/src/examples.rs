@@ -182,7 +182,8 @@ mod tests {
         assert!(all.len() > 15, "{}", all.len());
         for Offered { name, text, scene, .. } in &all {
             let text = bond_graph::text::Text { path: name.into(), text: text.clone() };
-            let wanted = bond_graph::text::Wanted { scene: Some(scene.clone()), most: None };
+            let counted = bond_graph::text::Counted::Made;
+            let wanted = bond_graph::text::Wanted { scene: Some(scene.clone()), counted, most: None };
             let graphs = bond_graph::file::graphs(&text, &wanted).unwrap_or_else(|faults| panic!("{name}: {faults:?}"));
             assert!(!graphs.is_empty(), "{name}");
         }

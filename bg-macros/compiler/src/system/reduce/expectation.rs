@@ -231,7 +231,7 @@ mod tests {
     fn report(variant: &Variant) -> Report {
         let equations = pipeline::derive(&variant.graph).expect("equations").equations;
         let wanted = wanted(scene(variant), &equations).expect("parameters");
-        reduce::for_scene(equations, &wanted, &mut |_| 0).1
+        reduce::for_scene(equations, &wanted, false, &mut |_| 0).1
     }
 
     #[test]
@@ -286,7 +286,7 @@ mod tests {
             let variant = hinges(axes, gravity, rigid).remove(1);
             let equations = pipeline::derive(&variant.graph).expect("equations").equations;
             let wanted = wanted(scene(&variant), &equations).expect("parameters");
-            let report = reduce::for_scene(equations, &wanted, &mut crate::program::rate_operations).1;
+            let report = reduce::for_scene(equations, &wanted, false, &mut crate::program::rate_operations).1;
             check(scene(&variant), &report).err().map(|faults| faults[0].message.clone())
         };
         for rigid in ["rigid;", "stiffness 1e5; tilt stiffness 1e3;"] {

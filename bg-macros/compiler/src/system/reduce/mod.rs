@@ -51,8 +51,34 @@ struct Pass {
     run: fn(&mut StateEquations, &Wanted, &mut Report, &mut Operations<'_>),
 }
 
-/// What tells how many operations the rate function of equations takes.
+/// What tells how many operations the rate function of equations takes. Their pool may gain nodes, on whose order the
+/// order of operations in programs depends: of equations that become programs all counts are taken or none is.
 type Operations<'a> = dyn FnMut(&mut StateEquations) -> usize + 'a;
+
+/// The operations of equations on their way through the reductions.
+struct Counter<'a, 'o> {
+    operations: &'a mut Operations<'o>,
+    /// Whether the report has those after each reduction.
+    is_told: bool,
+}
+
+impl Counter<'_, '_> {
+    /// Enters the size of the equations after a reduction into the report.
+    fn note(&mut self, stage: &'static str, equations: &mut StateEquations, report: &mut Report) {
+        let operations = self.is_told.then(|| (self.operations)(equations));
+        report.count(stage, equations.states.len(), operations);
+    }
+
+    /// The operations of a rate of reduced equations, a sine or cosine as many as it takes.
+    fn cost(&mut self, equations: &mut StateEquations, report: &Report) -> usize {
+        const CALL: usize = 15;
+        let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
+        let is_call = |id: &Id| matches!(equations.pool.node(*id), Node::Call(..));
+        let calls = equations.pool.reachable(&rates).iter().filter(|id| is_call(id)).count();
+        let counted = report.counts.last().and_then(|count| count.operations);
+        counted.unwrap_or_else(|| (self.operations)(equations)) + CALL * calls
+    }
+}
 
 /// The reductions, in three parts, in the order in which they find most. First, what everything else is shorter by.
 const PARAMETERS: [Pass; 1] = [Pass {
@@ -115,34 +141,39 @@ fn always(_: &StateEquations, _: &Wanted) -> bool {
     true
 }
 
-/// Reduces the equations to what a scene needs. `operations` says what the rate function of equations costs, for the
-/// report.
+/// Reduces the equations to what a scene needs. `operations` says what the rate function of equations costs; where
+/// `is_counted` the report has that after each reduction.
 #[must_use]
 pub fn for_scene(
     mut equations: StateEquations,
     wanted: &Wanted,
+    is_counted: bool,
     operations: &mut Operations<'_>,
 ) -> (StateEquations, Report) {
     let mut report = Report::new(&equations);
-    report.count("literal", equations.states.len(), operations(&mut equations));
-    run(&PARAMETERS, &mut equations, wanted, &mut report, operations);
+    let counter = &mut Counter { operations, is_told: is_counted };
+    counter.note("literal", &mut equations, &mut report);
+    run(&PARAMETERS, &mut equations, wanted, &mut report, counter);
     let before = may_be_jointed(&equations, wanted).then(|| (equations.clone(), report.clone()));
-    let mut by_tree = match in_joint_coordinates(before.clone(), wanted, tree::Which::NotFlat, operations) {
+    let by_tree = match in_joint_coordinates(before.clone(), wanted, tree::Which::NotFlat, counter) {
         Some(Jointed { equations, report, is_long: true }) => return (equations, report),
         by_tree => by_tree,
     };
-    run(&STATES, &mut equations, wanted, &mut report, operations);
-    run(&JOINTS, &mut equations, wanted, &mut report, operations);
+    run(&STATES, &mut equations, wanted, &mut report, counter);
+    run(&JOINTS, &mut equations, wanted, &mut report, counter);
     // What lies flat is moved out of its plane as soon as a force may be across it, as far as this can prove.
-    if by_tree.is_none() && !expectation::out_of_plane(&report).is_empty() {
-        by_tree = in_joint_coordinates(before, wanted, tree::Which::All, operations);
-    }
-    match by_tree {
-        Some(by_tree) if cost(&by_tree.equations, &by_tree.report) < cost(&equations, &report) => {
-            (by_tree.equations, by_tree.report)
+    let by_tree = match by_tree {
+        None if !expectation::out_of_plane(&report).is_empty() => {
+            in_joint_coordinates(before, wanted, tree::Which::All, counter)
         }
-        _ => (equations, report),
+        by_tree => by_tree,
+    };
+    if let Some(mut by_tree) = by_tree
+        && counter.cost(&mut by_tree.equations, &by_tree.report) < counter.cost(&mut equations, &report)
+    {
+        (equations, report) = (by_tree.equations, by_tree.report);
     }
+    (equations, report)
 }
 
 /// What is reduced with trees of joints by their coordinates.
@@ -163,12 +194,12 @@ fn run(
     equations: &mut StateEquations,
     wanted: &Wanted,
     report: &mut Report,
-    operations: &mut Operations<'_>,
+    counter: &mut Counter<'_, '_>,
 ) {
     for pass in passes {
         if (pass.applies)(equations, wanted) {
-            (pass.run)(equations, wanted, report, operations);
-            report.count(pass.name, equations.states.len(), operations(equations));
+            (pass.run)(equations, wanted, report, counter.operations);
+            counter.note(pass.name, equations, report);
         }
     }
 }
@@ -183,25 +214,16 @@ fn in_joint_coordinates(
     of: Option<(StateEquations, Report)>,
     wanted: &Wanted,
     which: tree::Which,
-    operations: &mut Operations<'_>,
+    counter: &mut Counter<'_, '_>,
 ) -> Option<Jointed> {
     let (mut equations, mut report) = of?;
     tree::put(&mut equations, &mut report, which)?;
-    report.count("joints by their coordinates", equations.states.len(), operations(&mut equations));
+    counter.note("joints by their coordinates", &mut equations, &mut report);
     let all = tree::speeds(&equations);
-    run(&STATES, &mut equations, wanted, &mut report, operations);
+    run(&STATES, &mut equations, wanted, &mut report, counter);
     let is_long = all > SHORT && tree::speeds(&equations) == all;
-    run(&JOINTS, &mut equations, wanted, &mut report, operations);
+    run(&JOINTS, &mut equations, wanted, &mut report, counter);
     Some(Jointed { equations, report, is_long })
-}
-
-/// The operations of a rate, a sine or cosine as many as it takes.
-fn cost(equations: &StateEquations, report: &Report) -> usize {
-    const CALL: usize = 15;
-    let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
-    let is_call = |id: &Id| matches!(equations.pool.node(*id), Node::Call(..));
-    let calls = equations.pool.reachable(&rates).iter().filter(|id| is_call(id)).count();
-    report.counts.last().map_or(0, |count| count.operations) + CALL * calls
 }
 
 /// Counts the turns of angles in a literal model, which has no proofs.

@@ -54,8 +54,8 @@ pub struct Count {
     pub stage: &'static str,
     /// States left.
     pub states: usize,
-    /// Operations of the rate function.
-    pub operations: usize,
+    /// Operations of the rate function, where they are counted.
+    pub operations: Option<usize>,
 }
 
 /// Why the rows of rigid joints are not solved for momenta and positions of bodies.
@@ -127,7 +127,7 @@ impl Report {
     }
 
     /// Notes the size of the model.
-    pub(super) fn count(&mut self, stage: &'static str, states: usize, operations: usize) {
+    pub(super) fn count(&mut self, stage: &'static str, states: usize, operations: Option<usize>) {
         self.counts.push(Count { stage, states, operations });
     }
 
@@ -172,7 +172,8 @@ impl std::fmt::Display for Report {
             of(|fate| *fate == Fate::Quadrature),
         )?;
         for Count { stage, states, operations } in &self.counts {
-            writeln!(f, "  {stage}: {states} states, {operations} operations a rate")?;
+            let counted = operations.map_or_else(String::new, |count| format!(", {count} operations a rate"));
+            writeln!(f, "  {stage}: {states} states{counted}")?;
         }
         if let Some(kept) = self.kept.as_ref().filter(|kept| **kept != Kept::NothingRigid) {
             writeln!(f, "  the reactions of all rigid joints are kept: {kept}")?;

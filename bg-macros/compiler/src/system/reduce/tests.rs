@@ -47,7 +47,7 @@ pub(super) fn attempt(statements: &str, clauses: &str) -> Result<Scene, Faults> 
     let mut literal = derived.clone();
     solve_reactions(&mut literal);
     literal.close();
-    let (mut reduced, report) = for_scene(derived, &wanted, &mut program::rate_operations);
+    let (mut reduced, report) = for_scene(derived, &wanted, true, &mut program::rate_operations);
     reduced.close();
     Ok(Scene { literal, tuned: wanted.tuned, reduced, report })
 }

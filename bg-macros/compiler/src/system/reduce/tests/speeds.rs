@@ -37,7 +37,7 @@ const SHAPER: &str = "param torque: N*m = 2; gravity [0, -9.81, 0]; ground { poi
 
 /// The operations of a rate after the last reduction.
 fn operations(scene: &Scene) -> usize {
-    scene.report.counts.last().expect("a count").operations
+    scene.report.counts.last().and_then(|count| count.operations).expect("a count")
 }
 
 fn fits_the_literal_model(scene: &Scene) {

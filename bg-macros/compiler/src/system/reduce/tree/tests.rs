@@ -25,7 +25,7 @@ fn observed(bodies: usize, others: &str) -> String {
 
 /// The operations of a rate after the last reduction.
 fn operations(scene: &Scene) -> usize {
-    scene.report.counts.last().expect("a count").operations
+    scene.report.counts.last().and_then(|count| count.operations).expect("a count")
 }
 
 /// Makes the components of orientations that are states those of a rotation at random (Euler, Rodrigues).
@@ -370,7 +370,8 @@ fn put(statements: &str) -> Scene {
         let solution = equations.solution.clone();
         equations.replace(&|symbol| solution.value(symbol));
     }
-    report.count("joints by their coordinates", reduced.states.len(), crate::program::rate_operations(&mut reduced));
+    let operations = crate::program::rate_operations(&mut reduced);
+    report.count("joints by their coordinates", reduced.states.len(), Some(operations));
     Scene { literal, tuned: vec![false; reduced.parameters.len()], reduced, report }
 }
 
