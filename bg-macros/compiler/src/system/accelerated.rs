@@ -11,25 +11,27 @@ use std::collections::BTreeMap;
 
 use super::inverse::{InverseDynamics, Row, Variable};
 use super::jacobian::{Entry, Jacobian, equations_of};
+use super::stopped;
 use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::equations::StateEquations;
 
 /// The derivatives; none where the states are no coordinates of more than one freedom, or reactions are of dry friction or
-/// a stop.
+/// of a stop that is on no joint alone.
 pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
-    let inverse = equations.inverse.as_ref()?;
-    let (solution, holding) = (&equations.solution, &equations.holding);
-    let multipliers = solution.smooth(&equations.pool);
-    let rows = holding.rigid.len();
-    let are_all = multipliers.len() == solution.multipliers.len() && multipliers.len() == rows;
+    let mut pool = equations.pool.clone();
+    let inverse = &stopped::with_stops(&mut pool, equations, equations.inverse.as_ref()?)?;
+    let rows = equations.holding.rigid.len();
+    let multipliers = &equations.solution.multipliers[..rows];
     let accelerations: Vec<(usize, usize)> = inverse.all().collect();
-    if !are_all || accelerations.len() < 2 {
+    if accelerations.len() < 2 {
         return None;
     }
-    let mut pool = equations.pool.clone();
     let unknowns: Vec<Symbol> =
         accelerations.iter().map(|&of| inverse.symbol(of)).chain(multipliers.iter().copied()).collect();
     let rates = by_accelerations(&mut pool, equations, inverse);
+    if stopped::are_read(&pool, equations, &rates) {
+        return None;
+    }
     let efforts = inverse.rows(&mut pool);
     let flows = flow_rates(&mut pool, equations, &rates);
     let flows = equations_of(&mut pool, equations, multipliers, &flows);
@@ -54,6 +56,10 @@ pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
         }
         let entry = |(row, value)| Entry { row, column, value };
         entries.extend(slopes.into_iter().enumerate().map(entry).filter(|entry| !pool.is_zero(entry.value)));
+    }
+    let is_free = |unknown: usize| inverse.moved[accelerations[unknown].0].locked.is_none();
+    if !stopped::are_regular(&mut pool, &entries, (n, accelerations.len()), &is_free) {
+        return None;
     }
     let needed = needed(&entries, n, unknowns.len());
     let late = needed[unknowns.len() - rows..].iter().filter(|&&needed| needed).count();

@@ -12,6 +12,7 @@ pub mod reduce;
 pub mod requirements;
 pub mod second_order;
 pub mod sizes;
+mod stopped;
 mod value;
 
 pub use equations::StateEquations;

@@ -13,7 +13,7 @@ use crate::system::equations::Reaction;
 pub(super) const DECAY: f64 = 1.0;
 /// The rate with which truncation of what rests decays, 1/s: as slow, and critically damped, since a stop knows its
 /// place.
-pub(super) const PLACE: f64 = 1.0;
+pub(in crate::system) const PLACE: f64 = 1.0;
 /// The part of its diagonal entry below which a pivot of dry friction counts as zero: others hold that motion already.
 const PART: f64 = 1e-10;
 

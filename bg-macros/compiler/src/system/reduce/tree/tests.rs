@@ -547,7 +547,7 @@ fn same_derivatives(statements: &str) -> (usize, [usize; 2]) {
         let mut states: Vec<f64> = equations.states.iter().map(|_| draw.number()).collect();
         turn(&equations.states, &mut states, &mut draw);
         let inputs: Vec<f64> = equations.inputs.iter().map(|_| draw.number()).collect();
-        // Sticking first, then sliding each way.
+        // Sticking and resting first, then sliding each way.
         let negative: Vec<bool> = (0..equations.switches.len()).map(|switch| round >> switch & 1 == 1).collect();
         let environment =
             Environment { states: &states, inputs: &inputs, negative: &negative, time: 0.3, ..Environment::default() };
@@ -593,7 +593,8 @@ fn derivatives_by_accelerations_are_those_entry_by_entry() {
 }
 
 /// Of a body on no joint, and of one on a ball at the ground, motion and accelerations are unknowns; a joint that sticks has
-/// a known acceleration; with a ball farther out and with stops derivatives are those of the rates.
+/// a known acceleration, and so has one that rests on a stop; with a ball farther out, and with stops and dry friction, derivatives
+/// are those of the rates.
 #[test]
 fn derivatives_of_bodies_that_keep_their_orientation() {
     let floating = joined(&["revolute y", "<universal x y", "prismatic z"].map(str::to_owned), "")
@@ -613,7 +614,16 @@ fn derivatives_of_bodies_that_keep_their_orientation() {
         (of(&["spherical", "revolute x", "prismatic y"], ""), 9 + 2),
         (of(&["revolute y", "spherical"], ""), 0),
         (of(&["revolute y", "revolute x"], "friction brake on j1 { coulomb 5; viscous 0.3; }"), 2),
-        (of(&["revolute y", "revolute x"], "stop end on j1 { at most 0.2; restitution 0.5; }"), 0),
+        (of(&["revolute y", "revolute x"], "stop end on j1 { at most 0.2; restitution 0.5; }"), 2),
+        (
+            of(
+                &["revolute y", "<revolute x", "prismatic z"],
+                "stop one on j1 { at least -0.3; at most 0.2; restitution 0; } stop two on j2 { at most 0.1; restitution 0.5; }
+                 drive m on j1 torque = 3 - 2 * j1.angle - 0.3 * j1.speed;",
+            ),
+            3,
+        ),
+        (of(&["revolute y", "revolute x"], "stop s on j1 { at most 0.2; restitution 0; } friction b on j1 { coulomb 5; }"), 0),
     ] {
         assert_eq!(same_derivatives(&text).0, unknowns, "{text}");
     }
