@@ -109,6 +109,8 @@ mod language;
 mod model;
 mod solve;
 
+#[doc(hidden)]
+pub use model::tabled;
 pub use model::{
     assembly, capability, clock, delay, description, drawing, dynamics, holding, input, iteration, linear, mechanism,
     parameters, requirement, sampled, scalar, series, standing, start, system,

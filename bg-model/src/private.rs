@@ -27,6 +27,7 @@ pub use crate::model::scalar::lanes::{Lanes, Vector};
 pub use crate::model::scalar::slopes::Slopes;
 pub use crate::model::series::{store, window};
 pub use crate::model::start::{StartRoutine, StartTable, Starting, decided, kept, redundant, share, sides, start};
+pub use crate::model::tabled::{Table, are_doubles, evaluate, is_tabled};
 pub use crate::model::vectorised::vectorised_rate;
 
 /// Eliminations as tables, where they are too long to be unrolled.

@@ -13,10 +13,11 @@ use bg_loaded::{BackEnd, Blueprint, Counted, Graph, Interpreted, Wanted, load, l
 use bg_model::dynamics::{Machine, branches};
 use bg_model::input::Input;
 use bg_model::integrator::Integrator;
-use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
+use bg_model::mechanism::{Differentiable, Mechanism, MechanismVisitor, Scenes};
 use bg_model::nalgebra::Complex;
 use bg_model::parameters::{ParameterError, Parameters};
 use bg_model::run::{Request, RunError, Simulation, Trajectory};
+use bg_model::scalar::{Gradient, Scalar};
 use bg_model::simulation::Samples;
 use bond_graph_tests::each_example;
 
@@ -80,7 +81,9 @@ impl MechanismVisitor for Beside<'_> {
         let blueprint = self.graph.models[self.index].blueprint.as_ref().expect("all scenes were asked for");
         assert_eq!(*blueprint.description(), *Me::describe());
         let values = parameters.values();
-        let compiled = Me::make(parameters, &inputs).expect("defaults are possible").machine();
+        let model = Me::make(parameters, &inputs).expect("defaults are possible");
+        let compiled = Differentiable::machine(&model);
+        same_values(&*compiled, &*model.sloped(&inputs).expect("the same values are possible"));
         for back_end in BACK_ENDS {
             let loaded = loaded(blueprint, &values, &inputs, back_end).expect("the compiled model takes these values");
             same_functions(&*compiled, &*loaded, Compared::WithoutSignsOfZeros);
@@ -90,6 +93,66 @@ impl MechanismVisitor for Beside<'_> {
         }
         let has_back_end = cfg!(any(target_arch = "x86_64", target_arch = "aarch64"));
         assert_eq!(blueprint.translate() > 0, has_back_end, "{}", blueprint.description().name);
+    }
+}
+
+/// Numbers with slopes, for which long functions are tables, have the values of doubles, for which they are straight code.
+fn same_values(compiled: &dyn Machine, sloped: &dyn Machine<Gradient>) {
+    let Ok(start) = compiled.start() else { return };
+    let name = compiled.description().name;
+    let compared = Compared::WithoutSignsOfZeros;
+    let (n, g) = (compiled.states(), compiled.switches());
+    let mut random = fastrand::Rng::with_seed(11);
+    for round in 0..4 {
+        let t = 0.1 * f64::from(round);
+        let x: Vec<f64> = start.iter().map(|x| x + f64::from(round) * 1e-3 * (random.f64() - 0.5)).collect();
+        let negative = branches(compiled, t, &x);
+        let lifted = |of: &[f64]| of.iter().copied().map(Gradient::from_f64).collect::<Vec<_>>();
+        let (time, states) = (Gradient::from_f64(t), lifted(&x));
+        let same = |what: &str, double: &[f64], with_slopes: &[Gradient]| {
+            let values: Vec<f64> = with_slopes.iter().map(|number| number.to_f64()).collect();
+            assert_eq!(compared.bits(double), compared.bits(&values), "{name}: {what} at {t} s");
+        };
+        let (mut double, mut with_slopes) = (vec![0.0; n], lifted(&vec![0.0; n]));
+        compiled.rate(t, &x, &negative, &mut double);
+        sloped.rate(time, &states, &negative, &mut with_slopes);
+        same("rate", &double, &with_slopes);
+        let (mut double, mut with_slopes) = (vec![0.0; g], lifted(&vec![0.0; g]));
+        compiled.guards(t, &x, &negative, &mut double);
+        sloped.guards(time, &states, &negative, &mut with_slopes);
+        same("guards", &double, &with_slopes);
+        let (mut double, mut with_slopes) = (x.clone(), states.clone());
+        compiled.project(t, &negative, &mut double);
+        sloped.project(time, &negative, &mut with_slopes);
+        same("project", &double, &with_slopes);
+        let outputs = compiled.description().outputs.len();
+        let (mut double, mut with_slopes) = (vec![0.0; outputs], lifted(&vec![0.0; outputs]));
+        compiled.outputs(t, &x, &negative, &mut double);
+        sloped.outputs(time, &states, &negative, &mut with_slopes);
+        same("outputs", &double, &with_slopes);
+        let (mut double, mut with_slopes) = (vec![0.0; n], lifted(&vec![0.0; n]));
+        let energy = compiled.energy(t, &x, &negative, &mut double);
+        same("energy", &[energy], &[sloped.energy(time, &states, &negative, &mut with_slopes)]);
+        same("sizes", &double, &with_slopes);
+        let (powers, with_slopes) = (compiled.powers(t, &x, &negative), sloped.powers(time, &states, &negative));
+        let double = [compiled.stored_energy(t, &x, &negative), powers.supplied, powers.dissipated];
+        let stored = sloped.stored_energy(time, &states, &negative);
+        same("energies", &double, &[stored, with_slopes.supplied, with_slopes.dissipated]);
+        for (what, count) in [
+            ("hold", compiled.held().map(|held| held.entries())),
+            ("impact", compiled.stops().map(|stops| stops.entries())),
+        ] {
+            let Some(count) = count else { continue };
+            let (mut double, mut with_slopes) = (vec![0.0; count], lifted(&vec![0.0; count]));
+            if what == "hold" {
+                compiled.hold(t, &x, &negative, &mut double);
+                sloped.hold(time, &states, &negative, &mut with_slopes);
+            } else {
+                compiled.impact(t, &x, &negative, &mut double);
+                sloped.impact(time, &states, &negative, &mut with_slopes);
+            }
+            same(what, &double, &with_slopes);
+        }
     }
 }
 

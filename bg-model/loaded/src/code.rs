@@ -8,12 +8,13 @@
 
 use std::any::Any;
 use std::collections::HashMap;
-use std::mem::{Discriminant, discriminant};
 use std::sync::OnceLock;
 
-use bg_compiler::expr::{self, Symbol};
-use bg_compiler::program::{Operation, Routine};
+use bg_compiler::expr::Symbol;
+use bg_compiler::program::Routine;
+use bg_compiler::program::batches::{self, Read, batches};
 use bg_model::scalar::Scalar;
+use bg_model::tabled::{Word, run};
 use bg_native::{Function, Inputs, Operand, Program};
 
 /// A place in the row of values.
@@ -51,27 +52,12 @@ enum Fixed {
 /// What an interpreter reads.
 #[derive(Clone, Debug)]
 struct Batches {
-    batches: Vec<Batch>,
+    /// The operations in batches of one kind.
+    words: Vec<Word>,
     /// The places of the results.
     results: Vec<Place>,
     /// How many places there are.
     places: usize,
-}
-
-/// Operations of one kind, whose results stand side by side.
-#[derive(Clone, Debug)]
-enum Batch {
-    Add(Vec<[Place; 2]>),
-    Subtract(Vec<[Place; 2]>),
-    Multiply(Vec<[Place; 2]>),
-    /// Times a number.
-    Times(Vec<(Place, f64)>),
-    Divide(Vec<[Place; 2]>),
-    Negate(Vec<Place>),
-    Unary(expr::Function, Vec<Place>),
-    Binary(expr::Function, Vec<[Place; 2]>),
-    /// The switch, the place where it is negative, that where it is not.
-    Select(Vec<(u32, [Place; 2])>),
 }
 
 /// The row of values of one program of one model.
@@ -200,14 +186,11 @@ impl Code {
     }
 
     fn interpret<S: Scalar>(&self, row: &mut Row<S>, x: &[S], negative: &[S::Switch], to: &mut [S]) {
-        let Batches { batches, results, places } = self.batches.get_or_init(|| self.batched());
+        let Batches { words, results, places } = self.batches.get_or_init(|| self.batched());
         row.values.resize(*places, S::from_f64(0.0));
         let values = &mut row.values[..];
         values[self.fixed.len()..][..self.states].copy_from_slice(&x[..self.states]);
-        let mut at = self.inputs();
-        for batch in batches {
-            at += batch.evaluate(values, at, negative);
-        }
+        run(words, values, self.inputs(), negative);
         to.iter_mut().zip(results).for_each(|(to, &place)| *to = values[place as usize]);
     }
 
@@ -244,82 +227,27 @@ impl Code {
     /// The operations in batches.
     fn batched(&self) -> Batches {
         let operations = &self.program.operations;
-        let order = order(operations, &|operand| self.number(operand).is_some());
-        let mut values = vec![0; operations.len()];
-        order.iter().flatten().zip(place(self.inputs())..).for_each(|(&of, place)| values[of] = place);
         let (first_state, first_read) = (place(self.fixed.len()), place(self.fixed.len() + self.states));
-        let place = |operand: Operand| match operand {
-            Operand::Fixed(index) => index,
-            Operand::State(index) => first_state + index,
-            Operand::Read(index) => first_read + index,
-            Operand::Value(index) => values[index as usize],
+        let read = |operand: Operand| match operand {
+            Operand::Fixed(index) => match self.fixed[index as usize] {
+                Fixed::Number(value) => Read::Number(value, index),
+                Fixed::Constant(_) => Read::Place(index),
+            },
+            Operand::State(index) => Read::Place(first_state + index),
+            Operand::Read(index) => Read::Place(first_read + index),
+            Operand::Value(index) => Read::Value(index),
         };
-        let batch = |batch: &Vec<usize>| {
-            let operations: Vec<_> = batch.iter().map(|&of| &operations[of]).collect();
-            Batch::of(&operations, &place, &|operand| self.number(operand))
+        let batches::Batches { words, values } = batches(operations, place(self.inputs()), &read);
+        let result = |&result: &Operand| match read(result) {
+            Read::Place(place) | Read::Number(_, place) => place,
+            Read::Value(value) => values[value as usize],
         };
         Batches {
-            batches: order.iter().map(batch).collect(),
-            results: self.program.results.iter().map(|&result| place(result)).collect(),
+            words: words.into_iter().map(u32::to_le_bytes).collect(),
+            results: self.program.results.iter().map(result).collect(),
             places: self.inputs() + operations.len(),
         }
     }
-
-    /// The number that an operand is.
-    fn number(&self, operand: Operand) -> Option<f64> {
-        match operand {
-            Operand::Fixed(index) => match self.fixed[index as usize] {
-                Fixed::Number(value) => Some(value),
-                Fixed::Constant(_) => None,
-            },
-            _ => None,
-        }
-    }
-}
-
-/// Which operations are one batch.
-type Kind = (Discriminant<Operation<Operand>>, bool, Option<expr::Function>);
-
-fn kind(of: &Operation<Operand>, is_number: &dyn Fn(Operand) -> bool) -> Kind {
-    let is_times = matches!(of, Operation::Multiply(a, b) if is_number(*a) || is_number(*b));
-    let function = if let Operation::Call(function, _) = of { Some(*function) } else { None };
-    (discriminant(of), is_times, function)
-}
-
-/// The operations in batches: of what is ready, each time all of the kind that there is most of.
-fn order(operations: &[Operation<Operand>], is_number: &dyn Fn(Operand) -> bool) -> Vec<Vec<usize>> {
-    let mut users = vec![Vec::new(); operations.len()];
-    let mut missing = vec![0_usize; operations.len()];
-    for (index, operation) in operations.iter().enumerate() {
-        for operand in operation.operands() {
-            if let Operand::Value(value) = operand {
-                users[value as usize].push(index);
-                missing[index] += 1;
-            }
-        }
-    }
-    let mut ready: Vec<(Kind, Vec<usize>)> = Vec::new();
-    let enter = |ready: &mut Vec<(Kind, Vec<usize>)>, index: usize| {
-        let kind = kind(&operations[index], is_number);
-        match ready.iter_mut().find(|(known, _)| *known == kind) {
-            Some((_, of)) => of.push(index),
-            None => ready.push((kind, vec![index])),
-        }
-    };
-    (0..operations.len()).filter(|&index| missing[index] == 0).for_each(|index| enter(&mut ready, index));
-    let mut batches = Vec::new();
-    while let Some((_, most)) = ready.iter_mut().max_by_key(|(_, of)| of.len()).filter(|(_, of)| !of.is_empty()) {
-        let mut batch = std::mem::take(most);
-        batch.sort_unstable();
-        for &user in batch.iter().flat_map(|&of| &users[of]) {
-            missing[user] -= 1;
-            if missing[user] == 0 {
-                enter(&mut ready, user);
-            }
-        }
-        batches.push(batch);
-    }
-    batches
 }
 
 /// Where what a program reads stands.
@@ -379,101 +307,4 @@ fn entered<T>(list: &mut Vec<T>, entry: T) -> Place {
 
 fn place(index: usize) -> Place {
     Place::try_from(index).expect("fewer than 2^32 values")
-}
-
-impl Batch {
-    /// Operations of one kind.
-    fn of(
-        operations: &[&Operation<Operand>],
-        place: &dyn Fn(Operand) -> Place,
-        number: &dyn Fn(Operand) -> Option<f64>,
-    ) -> Self {
-        let places = || operations.iter().map(|of| of.operands().into_iter().map(place).collect::<Vec<_>>());
-        let one = || places().map(|places| places[0]).collect();
-        let two = || places().map(|places| [places[0], places[1]]).collect();
-        match operations[0] {
-            Operation::Add(..) => Self::Add(two()),
-            Operation::Subtract(..) => Self::Subtract(two()),
-            Operation::Multiply(a, b) if number(*a).or(number(*b)).is_some() => {
-                let times = |of: &&Operation<Operand>| {
-                    let [a, b] = of.operands()[..] else { unreachable!("a product has two factors") };
-                    match (number(a), number(b)) {
-                        (Some(factor), _) => (place(b), factor),
-                        (_, Some(factor)) => (place(a), factor),
-                        _ => unreachable!("a batch has operations of one kind"),
-                    }
-                };
-                Self::Times(operations.iter().map(times).collect())
-            }
-            Operation::Multiply(..) => Self::Multiply(two()),
-            Operation::Divide(..) => Self::Divide(two()),
-            Operation::Negate(_) => Self::Negate(one()),
-            Operation::Call(function, _) if function.arity() == 2 => Self::Binary(*function, two()),
-            Operation::Call(function, _) => Self::Unary(*function, one()),
-            Operation::Select { .. } => {
-                let choice = |of: &&Operation<Operand>| match of {
-                    Operation::Select { switch, negative, positive } => (*switch, [place(*negative), place(*positive)]),
-                    _ => unreachable!("a batch has operations of one kind"),
-                };
-                Self::Select(operations.iter().map(choice).collect())
-            }
-        }
-    }
-
-    /// Writes its values from the place `at` on; gives how many.
-    fn evaluate<S: Scalar>(&self, values: &mut [S], at: usize, negative: &[S::Switch]) -> usize {
-        let (known, next) = values.split_at_mut(at);
-        let known = &*known;
-        match self {
-            Self::Add(of) => binary(known, next, of, |a, b| a + b),
-            Self::Subtract(of) => binary(known, next, of, |a, b| a - b),
-            Self::Multiply(of) => binary(known, next, of, |a, b| a * b),
-            Self::Divide(of) => binary(known, next, of, |a, b| a / b),
-            Self::Times(of) => each(next, of, |&(place, factor)| known[place as usize].times(factor)),
-            Self::Negate(of) => each(next, of, |&place| -known[place as usize]),
-            Self::Unary(function, of) => {
-                let function = of_one(*function);
-                each(next, of, |&place| function(known[place as usize]))
-            }
-            Self::Binary(function, of) => binary(known, next, of, of_two(*function)),
-            Self::Select(of) => each(next, of, |&(switch, [below, above])| {
-                S::select(negative[switch as usize], known[below as usize], known[above as usize])
-            }),
-        }
-    }
-}
-
-fn binary<S: Scalar>(known: &[S], next: &mut [S], of: &[[Place; 2]], value: impl Fn(S, S) -> S) -> usize {
-    each(next, of, |&[a, b]| value(known[a as usize], known[b as usize]))
-}
-
-fn each<T, S>(next: &mut [S], of: &[T], value: impl Fn(&T) -> S) -> usize {
-    next.iter_mut().zip(of).for_each(|(to, of)| *to = value(of));
-    of.len()
-}
-
-/// A function of one argument.
-pub fn of_one<S: Scalar>(function: expr::Function) -> fn(S) -> S {
-    match function {
-        expr::Function::Sqrt => S::sqrt,
-        expr::Function::Sin => S::sin,
-        expr::Function::Cos => S::cos,
-        expr::Function::Tan => S::tan,
-        expr::Function::Asin => S::asin,
-        expr::Function::Acos => S::acos,
-        expr::Function::Exp => S::exp,
-        expr::Function::Ln => S::ln,
-        expr::Function::Tanh => S::tanh,
-        expr::Function::Abs => S::abs,
-        expr::Function::Atan2 | expr::Function::Pow => unreachable!("{function:?} has two arguments"),
-    }
-}
-
-/// A function of two arguments.
-pub fn of_two<S: Scalar>(function: expr::Function) -> fn(S, S) -> S {
-    match function {
-        expr::Function::Atan2 => S::atan2,
-        expr::Function::Pow => S::powf,
-        _ => unreachable!("{function:?} has one argument"),
-    }
 }

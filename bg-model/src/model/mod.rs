@@ -25,4 +25,5 @@ pub mod series;
 pub mod standing;
 pub mod start;
 pub mod system;
+pub mod tabled;
 pub(crate) mod vectorised;

@@ -18,6 +18,7 @@ mod routines;
 mod shared;
 mod start;
 mod system;
+mod tabled;
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
@@ -111,7 +112,7 @@ impl Emission<'_> {
         let constructors = self.constructors(given, constants);
         let (system, capabilities, model, reversed) =
             (self.system(), self.capabilities(), self.model(), self.reversed());
-        let (mechanism, parts) = (self.mechanism(), self.parts());
+        let (mechanism, parts, straight) = (self.mechanism(), self.parts(), self.straight());
         let import_pair = constants.has_pairs.then(|| {
             quote!(
                 use ::bg_model::scalar::Pair as _;
@@ -126,6 +127,7 @@ impl Emission<'_> {
 
             #constructors
             #parts
+            #straight
             #system
             #capabilities
             #model

@@ -29,6 +29,8 @@ pub(super) struct Reads<'a> {
     pub found: usize,
     /// The numbers of states and of switches.
     pub shape: [&'a Literal; 2],
+    /// Whether it is compiled for the machine's vectors as a whole; else its inner products alone are.
+    pub in_vectors: bool,
     /// `let`s of what some assignments read: inputs from the time `at`, the states' coefficients from `x`.
     pub by: &'a dyn Fn(&[Assignment]) -> TokenStream,
 }
@@ -112,6 +114,7 @@ pub(super) fn expansion(routine: &Routine, paired: Option<&Paired>, names: &Name
         Some(_) => quote!(let (c, q) = (&self.constants, &self.constant_pairs);),
         None => quote!(let c = &self.constants;),
     };
+    let next_order = format_ident!("{}", if reads.in_vectors { "at_next_order" } else { "called_at_next_order" });
     let at = long.as_ref().map(|_| quote!(let at = t;));
     let body = quote! {
         use ::bg_model::series::{first_product, next_product #pair_products};
@@ -132,7 +135,7 @@ pub(super) fn expansion(routine: &Routine, paired: Option<&Paired>, names: &Name
         let mut inner = ::bg_model::series::InnerProducts::<S, #products>::first();
         for k in 1..series.len() - 1 {
             let t = if k == 1 { h } else { S::from_f64(0.0) };
-            let inner = inner.at_next_order(&table[..k]);
+            let inner = inner.#next_order(&table[..k]);
             let rows = &mut table[..=k];
             let [x] = &series[k].data.0;
             #states
@@ -214,7 +217,7 @@ impl Pass {
             let name = format_ident!("series_{pass}_part_{index}");
             let (read, block) = ((reads.by)(&part.assignments), parsed(&part.code(&definitions)));
             let function = quote! {
-                #[cfg_attr(not(debug_assertions), inline(always))]
+                #[inline(never)]
                 fn #name(&self, #(#declared,)* v: &mut #array) {
                     use ::bg_model::series::{first_product, next_product};
                     let c = &self.constants;

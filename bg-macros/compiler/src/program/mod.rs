@@ -12,7 +12,8 @@ mod tape;
 
 pub use bg_expressions::elimination;
 pub use bg_expressions::schedule::{
-    Assignment, Counts, Operand, Operation, Program, Request, Reverse, Routine, pairs, repetition, reverse, schedule,
+    Assignment, Counts, Operand, Operation, Program, Request, Reverse, Routine, batches, pairs, repetition, reverse,
+    schedule,
 };
 pub use changes::Changes;
 pub use deferred::{Deferred, deferred};

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::expr::{Function, Id, Node, Number, Pool, Symbol, children};
+use crate::expr::{Id, Node, Number, Pool, Symbol, children};
 use crate::system::equations::{Quantity, Solution};
 
 /// The steps and what is wanted of them.
@@ -81,7 +81,7 @@ impl Writer<'_> {
             }
             Node::Call(function, arguments) => {
                 let arguments = arguments.iter().map(|id| self.steps[id]);
-                [8, code(*function)].into_iter().chain(arguments).collect()
+                [8, function.number()].into_iter().chain(arguments).collect()
             }
             Node::Select { switch, negative, positive } => {
                 vec![9, *switch, self.steps[negative], self.steps[positive]]
@@ -122,23 +122,6 @@ fn leaf(symbol: Symbol, solution: &Solution) -> Option<(u32, u32)> {
         | Symbol::Unsolved(_)
         | Symbol::Rate(_)
         | Symbol::Weight(_) => None,
-    }
-}
-
-fn code(function: Function) -> u32 {
-    match function {
-        Function::Sqrt => 0,
-        Function::Sin => 1,
-        Function::Cos => 2,
-        Function::Tan => 3,
-        Function::Asin => 4,
-        Function::Acos => 5,
-        Function::Atan2 => 6,
-        Function::Exp => 7,
-        Function::Ln => 8,
-        Function::Tanh => 9,
-        Function::Abs => 10,
-        Function::Pow => 11,
     }
 }
 

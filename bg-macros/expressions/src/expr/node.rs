@@ -95,6 +95,25 @@ impl Function {
         if matches!(self, Self::Atan2 | Self::Pow) { 2 } else { 1 }
     }
 
+    /// The function's number in tables that are interpreted.
+    #[must_use]
+    pub fn number(self) -> u32 {
+        match self {
+            Self::Sqrt => 0,
+            Self::Sin => 1,
+            Self::Cos => 2,
+            Self::Tan => 3,
+            Self::Asin => 4,
+            Self::Acos => 5,
+            Self::Atan2 => 6,
+            Self::Exp => 7,
+            Self::Ln => 8,
+            Self::Tanh => 9,
+            Self::Abs => 10,
+            Self::Pow => 11,
+        }
+    }
+
     /// The function's name in texts.
     #[must_use]
     pub fn name(self) -> &'static str {

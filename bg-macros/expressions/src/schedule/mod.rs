@@ -8,6 +8,7 @@
 //! the greedy choices depend on each other, each way of grouping is tried and the cheapest result taken.
 
 mod addends;
+pub mod batches;
 mod build;
 mod factor;
 mod factors;

@@ -268,6 +268,13 @@ impl<S: Scalar, const P: usize> InnerProducts<S, P> {
         &self.sums
     }
 
+    /// The same, compiled for the vectors of the machine where what calls it is not.
+    #[inline(never)]
+    pub fn called_at_next_order<const W: usize>(&mut self, rows: &[[S; W]]) -> &[S; P] {
+        S::in_vectors(NextOrder { inner: &mut *self, rows });
+        &self.sums
+    }
+
     /// The sums of an order, and of the next one as far as these `rows` go, which begin with order 1.
     #[inline(always)]
     fn begin_two<const W: usize>(&mut self, rows: &[[S; W]]) {
@@ -303,6 +310,21 @@ impl<S: Scalar, const P: usize> InnerProducts<S, P> {
         }
         self.sums[at..at + M].copy_from_slice(&sums);
         self.next[at..at + M].copy_from_slice(&next);
+    }
+}
+
+/// The sums of the next order, in the vectors of the machine.
+struct NextOrder<'a, S, const P: usize, const W: usize> {
+    inner: &'a mut InnerProducts<S, P>,
+    rows: &'a [[S; W]],
+}
+
+impl<S: Scalar, const P: usize, const W: usize> NullaryFnOnce for NextOrder<'_, S, P, W> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        self.inner.at_next_order(self.rows);
     }
 }
 

@@ -9,6 +9,7 @@ use quote::{format_ident, quote};
 use super::super::items::identifier;
 use super::super::series;
 use super::parts::alone;
+use super::tabled::{Asked, SIZES};
 use super::{Emission, Shape, names};
 use crate::program::Programs;
 
@@ -60,8 +61,7 @@ impl Emission<'_> {
     fn storages(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
         let [routine] = &self.model.programs.sizes.routines;
-        let (body, results) = self.running(routine, &format_ident!("size_constants"));
-        let (energy, curvatures) = results.split_first().expect("the energy comes first");
+        let values = self.values(Asked::often(routine, SIZES));
         quote! {
             impl<S: Scalar> ::bg_model::capability::Storages<S, #n, #g> for Model<S> {
                 fn states(&self) -> &'static [::bg_model::description::StateInfo] {
@@ -69,9 +69,9 @@ impl Emission<'_> {
                 }
                 #[cold]
                 fn energy(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], curvatures: &mut SVector<S, #n>) -> S {
-                    #body
-                    curvatures.data.0 = [[#(#curvatures),*]];
-                    #energy
+                    let [energy, of_states @ ..] = #values;
+                    curvatures.data.0 = [of_states];
+                    energy
                 }
             }
         }
@@ -152,6 +152,7 @@ impl Emission<'_> {
             states,
             found,
             shape: [n, g],
+            in_vectors: self.inline().is_some(),
             by: &|group| {
                 let part = alone(routine, group, &[]);
                 let (inputs, states) = (self.input_bindings(&part, "at"), self.state_bindings(&part));
@@ -160,6 +161,7 @@ impl Emission<'_> {
         };
         let series::Expansion { width, operations, body, parts } = self
             .with_names(|names| series::expansion(routine, self.model.programs.pairs().rate.as_ref(), names, &reads));
+        let inline = self.inline().map_or_else(|| quote!(#[inline(never)]), |inline| quote!(#inline));
         let parts = (!parts.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #parts }));
         quote! {
             #parts
@@ -170,7 +172,7 @@ impl Emission<'_> {
                 fn operations(&self) -> Option<::bg_model::capability::Operations> {
                     Some(::bg_model::capability::Operations { #operations })
                 }
-                #[cfg_attr(not(debug_assertions), inline(always))]
+                #inline
                 fn expand(&self, t: S, h: S, negative: &[S::Switch; #g], rows: &mut [S], series: &mut [SVector<S, #n>]) {
                     #body
                 }

@@ -3,8 +3,9 @@
 //! In: the program of impacts, where there are stops with a restitution. Out: `Impacts` for the model.
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::quote;
 
+use super::tabled::{Asked, IMPACTS};
 use super::{Emission, Shape, shared};
 use crate::program::Program;
 use crate::tables::{Stop, Stops};
@@ -21,7 +22,7 @@ impl Emission<'_> {
         });
         let closing = shared::closing(closing);
         let kept = self.kept();
-        let (body, entries) = self.running(routine, &format_ident!("impact_constants"));
+        let values = self.values(Asked::rarely(routine, IMPACTS));
         Some(quote! {
             impl<S: Scalar> ::bg_model::capability::Impacts<S, #n, #g> for Model<S> {
                 fn stops(&self) -> ::bg_model::holding::Stops {
@@ -32,8 +33,7 @@ impl Emission<'_> {
                 #kept
                 #[inline(never)]
                 fn impact(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]) {
-                    #body
-                    entries.copy_from_slice(&[#(#entries),*]);
+                    entries.copy_from_slice(&#values);
                 }
             }
         })

@@ -14,8 +14,8 @@ impl Emission<'_> {
         let inputs = &self.model.derived.causal.graph.inputs;
         let inputs: Vec<_> = inputs.iter().map(|input| identifier(&input.name.text)).collect();
         let lanes = self.may_run_in_lanes().then(|| quote!(lanes));
-        // Blocks are not inlined into what is compiled for vectors: each operation in them would be a call.
-        let is_inlined = !self.model.programs.running.rate.is_long();
+        // What is long takes too long to compile in the vectors of two kinds of machines.
+        let is_inlined = self.model.programs.running.is_inlined();
         let in_vectors = is_inlined.then(|| quote!(::bg_model::__private::in_vectors! { #lanes }));
         of(&inputs, &quote!(&DESCRIPTION), &in_vectors.unwrap_or_default())
     }

@@ -25,6 +25,11 @@ pub(super) fn reads_found(routine: &Routine) -> bool {
     symbols(&[routine]).iter().any(|symbol| matches!(symbol, Symbol::Found(_)))
 }
 
+/// Whether the routine reads reactions.
+pub(super) fn reads_reactions(routine: &Routine) -> bool {
+    symbols(&[routine]).iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_)))
+}
+
 /// `let found`, where the routine reads what iterations find.
 pub(super) fn found(routine: &Routine) -> Option<TokenStream> {
     reads_found(routine).then(|| quote!(let found = self.found(t, x, negative);))

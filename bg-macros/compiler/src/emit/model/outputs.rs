@@ -7,7 +7,8 @@ use quote::quote;
 
 use super::super::items::identifier;
 use super::capabilities::accessor;
-use super::{Emission, Shape};
+use super::tabled::{Asked, CONSTANTS};
+use super::{Emission, Shape, names};
 
 impl Emission<'_> {
     pub(super) fn model(&self) -> TokenStream {
@@ -37,13 +38,12 @@ impl Emission<'_> {
 
     fn outputs(&self) -> TokenStream {
         let Shape { n, g, m, .. } = &self.shape;
-        let (body, outputs) = self.function(&self.model.programs.running.outputs);
-        let reactions = self.with_reactions();
+        let values = self.values(Asked::often(&self.model.programs.running.outputs, CONSTANTS));
+        let reactions = names::reads_reactions(&self.model.programs.running.outputs).then(|| self.with_reactions());
         quote! {
             fn outputs(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], y: &mut SVector<S, #m>) {
                 #reactions
-                #body
-                y.data.0 = [[#(#outputs),*]];
+                y.data.0 = [#values];
             }
         }
     }
@@ -83,23 +83,22 @@ impl Emission<'_> {
 
     fn stored_energy(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let (body, stored) = self.function(&self.model.programs.running.stored_energy);
+        let values = self.values(Asked::often(&self.model.programs.running.stored_energy, CONSTANTS));
         quote! {
             fn stored_energy(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> S {
-                #body
-                #(#stored)*
+                let [stored] = #values;
+                stored
             }
         }
     }
 
     fn powers(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let (body, powers) = self.function(&self.model.programs.running.powers);
-        let (supplied, dissipated) = (&powers[0], &powers[1]);
+        let values = self.values(Asked::rarely(&self.model.programs.running.powers, CONSTANTS));
         quote! {
             fn powers(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> ::bg_model::system::Powers<S> {
-                #body
-                ::bg_model::system::Powers { supplied: #supplied, dissipated: #dissipated }
+                let [supplied, dissipated] = #values;
+                ::bg_model::system::Powers { supplied, dissipated }
             }
         }
     }

@@ -7,6 +7,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::tabled::{Asked, CONSTANTS};
 use super::{Emission, Shape};
 
 /// What the start pose decides for a run, each an array of numbers of this many places: which rows are kept, on which
@@ -129,12 +130,12 @@ impl Emission<'_> {
     /// `reactions`: those of all rigid joints, of least norm where they are not unique.
     pub(super) fn reactions(&self) -> Option<TokenStream> {
         let Shape { n, g, .. } = &self.shape;
-        let (body, reactions) = self.function(&self.model.programs.running.reactions);
-        let count = reactions.len();
+        let routine = &self.model.programs.running.reactions;
+        let (values, count) = (self.values(Asked::rarely(routine, CONSTANTS)), routine.results.len());
         self.where_shared(|_| {
             quote! {
                 fn reactions(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> [S; #count] {
-                    let (state, mut reactions) = (x.as_slice(), { #body [#(#reactions),*] });
+                    let (state, mut reactions) = (x.as_slice(), #values);
                     let over = ::bg_model::__private::Over::<_, #n, #g, 0>(self);
                     ::bg_model::__private::share(&over, t, state, negative, &mut reactions);
                     reactions

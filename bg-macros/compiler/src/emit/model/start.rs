@@ -9,6 +9,7 @@ use quote::{format_ident, quote};
 use super::super::items::identifier;
 use super::required::requirement;
 use super::system::Inlined;
+use super::tabled::{Asked, HOLDING};
 use super::{Emission, Shape, shared};
 use crate::program::{Program, Programs, Starting};
 use crate::tables::{Gap, Held, Slip, Start};
@@ -66,19 +67,21 @@ impl Emission<'_> {
         });
         let requirements = requirements.iter().map(requirement);
         let Starting { guesses, gaps: of_gaps, gap_sizes, start_state, sides: of_sides, clocks: _ } = starting;
+        // Each with whether it is asked in doubles alone.
         let routines = [
-            ("Guesses", Some(guesses)),
-            ("Gaps", Some(of_gaps)),
-            ("GapSizes", Some(gap_sizes)),
-            ("State", Some(start_state)),
-            ("Sides", of_sides.as_ref()),
-            ("Required", required.as_ref()),
+            ("Guesses", Some(guesses), false),
+            ("Gaps", Some(of_gaps), false),
+            ("GapSizes", Some(gap_sizes), true),
+            ("State", Some(start_state), false),
+            ("Sides", of_sides.as_ref(), true),
+            ("Required", required.as_ref(), true),
         ];
-        let calls = routines.into_iter().map(|(word, program)| {
+        let calls = routines.into_iter().map(|(word, program, in_doubles)| {
             let word = format_ident!("{word}");
             let call = program.map(|Program { routines: [routine], .. }| {
                 let function = identifier(&routine.name);
-                quote!(Self::#function(values, unknowns, to))
+                let call = quote!(Self::#function(values, unknowns, to));
+                if in_doubles { quote!(if const { ::bg_model::__private::are_doubles::<S>() } { #call }) } else { call }
             });
             quote!(::bg_model::__private::StartRoutine::#word => { #call })
         });
@@ -119,12 +122,9 @@ impl Emission<'_> {
             self.tables.held.as_ref().expect("tables of what the program gives");
         let (rigid, compliant) = (rigid.iter().map(slip), compliant.iter().map(slip));
         let (kept, closing) = (self.kept(), shared::closing(closing));
-        let (body, entries) = self.running(routine, &format_ident!("holding_constants"));
+        let values = self.values(Asked::often(routine, HOLDING));
         let arguments = quote!(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S]);
-        let written = quote! {
-            #body
-            entries.copy_from_slice(&[#(#entries),*]);
-        };
+        let written = quote!(entries.copy_from_slice(&#values););
         let hold = if routine.is_long() {
             quote! {
                 #[inline(never)]

@@ -3,9 +3,10 @@
 //! In: the programs of the running model. Out: `System` for the model.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::{ToTokens, quote};
+use quote::{ToTokens, format_ident, quote};
 
 use super::super::items::identifier;
+use super::tabled::{Asked, CONSTANTS};
 use super::{Emission, Shape};
 use crate::program::Routine;
 use crate::tables::Delay;
@@ -75,9 +76,24 @@ impl Emission<'_> {
                 }
             }
         };
+        // By the table where numbers are interpreted, else by this.
+        let tabled = self.tabled(&running.rate, &format_ident!("constants"));
+        let chosen = |straight: TokenStream| {
+            let Some(tabled) = &tabled else { return quote!(fn rate(#arguments) { #straight }) };
+            quote! {
+                fn rate(#arguments) {
+                    if const { ::bg_model::__private::is_tabled::<S>() } {
+                        let to = dx.as_mut_slice();
+                        #tabled
+                    } else {
+                        #straight
+                    }
+                }
+            }
+        };
         let always = function(quote!(always_inlined_rate), Some(Inlined), self.function(&running.rate));
         let Some(paired) = &self.model.programs.pairs().rate else {
-            let rate = calling(quote!(rate), None, quote!(always_inlined_rate));
+            let rate = chosen(quote!(::bg_model::system::System::always_inlined_rate(self, t, x, negative, dx);));
             let inlined =
                 self.inline().map(|inline| calling(quote!(inlined_rate), Some(inline), quote!(always_inlined_rate)));
             return quote!(#rate #inlined #always);
@@ -85,16 +101,11 @@ impl Emission<'_> {
         let body = self.with_pairs(&running.rate, Some(paired), "constant");
         if !running.is_inlined() {
             let paired = function(quote!(paired_rate), Some(Inlined), body);
-            return quote! {
-                fn rate(#arguments) {
-                    ::bg_model::__private::vectorised_rate(self, t, x, negative, dx);
-                }
-                #paired
-                #always
-            };
+            let rate = chosen(quote!(::bg_model::__private::vectorised_rate(self, t, x, negative, dx);));
+            return quote!(#rate #paired #always);
         }
-        let (rate, inlined) =
-            (calling(quote!(rate), None, quote!(inlined_rate)), function(quote!(inlined_rate), Some(Inlined), body));
+        let rate = chosen(quote!(::bg_model::system::System::inlined_rate(self, t, x, negative, dx);));
+        let inlined = function(quote!(inlined_rate), Some(Inlined), body);
         quote!(#rate #inlined #always)
     }
 
@@ -105,12 +116,11 @@ impl Emission<'_> {
 
     fn guards(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let (body, guards) = self.function(&self.model.programs.running.guards);
+        let values = self.values(Asked::often(&self.model.programs.running.guards, CONSTANTS));
         quote! {
             #[inline(always)]
             fn guards(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], guards: &mut SVector<S, #g>) {
-                #body
-                guards.data.0 = [[#(#guards),*]];
+                guards.data.0 = [#values];
             }
         }
     }
@@ -135,15 +145,16 @@ impl Emission<'_> {
 
     /// Gives the states of `moved` what the routine makes of them.
     pub(super) fn projection(&self, routine: &Routine, moved: &[usize]) -> Option<TokenStream> {
-        let (body, projected) = self.function(routine);
+        let values = self.values(Asked::often(routine, CONSTANTS));
+        let places = (0..moved.len()).map(Literal::usize_unsuffixed);
         let indices = moved.iter().copied().map(Literal::usize_unsuffixed);
         (!moved.is_empty()).then(|| {
             quote! {
                 {
                     let x = &*state;
-                    #body
+                    let values = #values;
                     let [projected] = &mut state.data.0;
-                    #(projected[#indices] = #projected;)*
+                    #(projected[#indices] = values[#places];)*
                 }
             }
         })
