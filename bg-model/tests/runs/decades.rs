@@ -89,7 +89,7 @@ impl ModelVisitor<f64> for Counting<'_> {
 }
 
 /// The states of a model at some instants (s) in double-double arithmetic.
-fn exact(model: &dyn Liftable<DoubleDouble>, instants: &[f64]) -> Vec<Vec<f64>> {
+pub fn exact(model: &dyn Liftable<DoubleDouble>, instants: &[f64]) -> Vec<Vec<f64>> {
     let values: Vec<DoubleDouble> = model.values().into_iter().map(DoubleDouble::from_f64).collect();
     let system = model.lifted(&values).expect("in range");
     let start = system.start().expect("a start");

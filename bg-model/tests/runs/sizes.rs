@@ -2,9 +2,13 @@
 
 use bg_model::bond_graph;
 use bg_model::input::{Input, Table};
-use bg_model::integrator::Integrator;
+use bg_model::integrator::{Integrator, Tolerances};
+use bg_model::mechanism::Mechanism;
 use bg_model::run::{Simulation, Trajectory};
-use bg_model::simulation::Part;
+use bg_model::simulation::{Observer, Part, Samples, Settings, Span, drive};
+use bg_model::statistics::Statistics;
+
+use crate::decades::exact;
 
 bond_graph! {
     /// A charged capacitor, a coil and a resistance in one mesh.
@@ -253,5 +257,48 @@ fn a_run_that_goes_on_measures_errors_as_the_whole_run_does() {
         let anew = until(12e-6).from(&anew).run().expect("a run").statistics.steps;
         let rest = whole.statistics.steps - half.statistics.steps;
         assert!(anew > rest + 16, "{method:?}: {anew} steps that know of smaller states only, {rest} of the whole run");
+    }
+}
+
+/// Ends a run with the first step that leads beyond a time, s.
+struct Beyond {
+    t: f64,
+    has_passed: bool,
+}
+
+impl Observer for Beyond {
+    fn step(&mut self, t: f64, _: f64, _: &Statistics) {
+        self.has_passed = t > self.t;
+    }
+    fn is_done(&self) -> bool {
+        self.has_passed
+    }
+}
+
+/// From rest momenta move at once, positions later. Where only the former are looked at, the sizes of a first step are those of a free fall to
+/// the end of the run, and its tolerances so much too large.
+#[test]
+fn from_rest_a_stiff_pin_is_followed_as_exactly_in_a_long_run() {
+    let model = Swinging::new(SwingingParameters::default()).expect("in range");
+    let machine = model.machine();
+    let start = machine.start().expect("a start");
+    let force = |t: f64, x: &[f64]| {
+        let mut y = vec![0.0; machine.description().outputs.len()];
+        machine.outputs(t, x, &[], &mut y);
+        [y[1], y[2]]
+    };
+    for method in METHODS {
+        for rtol in [1e-6, 1e-8, 1e-10] {
+            let span = Span { t0: 0.0, t_end: 1e3 };
+            let samples = Samples::Every(f64::INFINITY);
+            let settings = Settings { tolerances: Tolerances::relative(rtol), samples, ..Settings::default() };
+            let mut beyond = Beyond { t: 2e-3, has_passed: false };
+            let finish =
+                drive(&*machine, &mut method.method(1.0), &start, span, &settings, None, &mut beyond).expect("a run");
+            let there = exact(&model, &[finish.t]).remove(0);
+            let [found, exact] = [finish.x.as_slice(), &there].map(|x| force(finish.t, x));
+            let off = (found[0] - exact[0]).hypot(found[1] - exact[1]) / exact[0].hypot(exact[1]) / rtol;
+            assert!(off < 3.0, "{method:?} at {rtol:e}: {off} tolerances at {} s", finish.t);
+        }
     }
 }

@@ -16,6 +16,10 @@ macro_rules! hand_on {
             $present!((&) self, method => method.measures())
         }
 
+        fn error_alone(&self) -> f64 {
+            $present!((&) self, method => method.error_alone())
+        }
+
         fn error_after(
             &mut self,
             flow: &Flow<'_>,

@@ -174,6 +174,13 @@ pub trait Method {
     /// Not a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
     fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64;
 
+    /// The norm of the last attempt's error by one estimate alone, of a method that makes a smaller norm of two; else 0.
+    /// How two fall together is right where the terms of their orders are there. At a start they may not be: from rest
+    /// positions are even functions of the time, momenta odd ones, and of each every other term vanishes.
+    fn error_alone(&self) -> f64 {
+        0.0
+    }
+
     /// The norm of what `project` leaves of the last attempt's error estimate; none where the method does not say.
     /// Joints that hold a motion take away what a step errs in it.
     fn error_after(

@@ -37,6 +37,8 @@ const AGAIN: f64 = 0.05;
 pub(crate) struct Run<'a> {
     pub stepper: Stepper<'a>,
     pub controller: StepSizeController,
+    /// Whether the next step is the first of the run, its size an estimate.
+    pub is_first: bool,
     /// What was not finite at the end of a longer step from the present start.
     pub faulty: Option<Faulty>,
     pub monitor: EventMonitor,
@@ -90,6 +92,7 @@ impl<'a> Run<'a> {
         Self {
             stepper,
             controller: StepSizeController::new(control, span, settings, has_breaks),
+            is_first: false,
             faulty: None,
             monitor: EventMonitor::new(system.switches()),
             condition,
@@ -124,6 +127,7 @@ impl<'a> Run<'a> {
             let (_, flow, start, _, scale) = self.stepper.split();
             let first = step_size::first_step(&flow, start, scale, order, longest);
             self.controller.begin(first);
+            self.is_first = true;
         }
         self.monitor.begin_by_probe(&mut self.stepper, &clear, self.controller.reach());
         self.stepper.end.become_that(self.stepper.start.borrowed());
@@ -252,6 +256,10 @@ impl<'a> Run<'a> {
             let t_new = self.controller.next_end(t, next_break);
             let h = t_new - t;
             error = self.stepper.attempt(h);
+            if self.is_first && error <= 1.0 {
+                let alone = self.stepper.method.error_alone();
+                error = if alone > 1.0 { alone } else { error };
+            }
             self.controller.follow(self.stepper.method.control());
             self.stepper.end.t = t_new;
             if error > 1.0 && self.is_around_singular() {
@@ -349,6 +357,7 @@ impl<'a> Run<'a> {
     fn accept(&mut self, observer: &mut dyn Observer) -> Result<bool, Cause> {
         self.check_joints()?;
         self.faulty = None;
+        self.is_first = false;
         if let Some(rounding) = &mut self.rounding {
             rounding.follow(&mut self.stepper, &self.sizes);
         }

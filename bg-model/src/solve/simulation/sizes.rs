@@ -282,10 +282,12 @@ impl SizeMonitor {
         })
     }
 
-    /// A point ahead of a start at rest, so near that the rates on the way to it depend little on it.
+    /// A point ahead, so near that the rates on the way to it depend little on it: also on where it leads positions from
+    /// rest.
     fn way_ahead(&self, stepper: &mut Stepper<'_>, longest: f64) -> Option<Point> {
         const TRIES: usize = 100;
         const SHORTER: [f64; 2] = [1e-6, 0.5];
+        const SHORTER_BY_PLACE: f64 = 1e-2;
         let weights = weights(stepper);
         let norm = |rate: &DVector<f64>| {
             rate.iter().zip(&weights).fold(0.0, |most, (rate, weight)| worse((rate * weight).abs(), most))
@@ -296,15 +298,23 @@ impl SizeMonitor {
             let mut rate = |x: &DVector<f64>| stepper.rate(start.t + h, x.as_slice());
             let alone = rate(&start.x);
             let there = rate(&(&start.x + (&start.rate + &alone) * (0.5 * h)));
-            let (depends, all) = (norm(&(&there - &alone)), larger(norm(&alone), norm(&start.rate)));
+            let all = larger(norm(&alone), norm(&start.rate));
             // A spring that passes its rest: what storages have tells what is little.
             let all = if all == 0.0 { norm(&start.x) / h } else { all };
             let x = &start.x + (&start.rate + &there) * (0.5 * h);
-            if depends <= LINEAR * all && x.iter().all(|x| x.is_finite()) {
-                return Some(Point { t: start.t + h, x, rate: there });
-            }
             let [least, most] = SHORTER;
-            h *= larger(least, (0.9 * LINEAR * all / depends).min(most));
+            let depends = |rate: &DVector<f64>| norm(&(rate - &alone));
+            let mut shorter = 0.9 * LINEAR * all / depends(&there);
+            if depends(&there) <= LINEAR * all && x.iter().all(|x| x.is_finite()) {
+                // So far only what the rates at the start move has moved, from rest no position: here all has.
+                let arrived = stepper.rate(start.t + h, x.as_slice());
+                if depends(&arrived) <= LINEAR * all {
+                    return Some(Point { t: start.t + h, x, rate: arrived });
+                }
+                // What moves from rest goes with the square of the time.
+                shorter = larger(SHORTER_BY_PLACE, libm::sqrt(0.9 * LINEAR * all / depends(&arrived)));
+            }
+            h *= larger(least, shorter.min(most));
         }
         None
     }

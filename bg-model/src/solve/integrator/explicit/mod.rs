@@ -114,6 +114,8 @@ pub struct Explicit<T> {
     /// States at the end of a step, as they are and moved by a difference, after their projection; the latter is also
     /// room for a difference.
     projected: [Vec<f64>; 2],
+    /// The norm of the last attempt's error by the first difference.
+    alone: f64,
     /// The machine's vectors.
     arch: Arch,
 }
@@ -128,6 +130,7 @@ impl<T: Tableau> Explicit<T> {
             halves: Halves::new(0),
             sum: CompensatedSum::new(0),
             projected: [const { Vec::new() }; 2],
+            alone: 0.0,
             arch: Arch::new(),
         }
     }
@@ -203,7 +206,9 @@ pub(crate) fn both<S: Scalar>(scale: S, first: S, second: S) -> S {
 impl<T: Tableau> Vectorised for Explicit<T> {
     #[inline(always)]
     fn attempt_inlined(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64 {
-        norm::<T, _>(h, self.stages.step(flow, &Begin::of(start, h), scale, &mut self.sum, end))
+        let differences = self.stages.step(flow, &Begin::of(start, h), scale, &mut self.sum, end);
+        self.alone = h.abs() * differences[0];
+        norm::<T, _>(h, differences)
     }
 }
 
@@ -238,6 +243,10 @@ impl<T: Tableau> Method for Explicit<T> {
         let error = |i: usize| (difference[i] / scale.allowed_between(i, start.x[i], end[i])).abs();
         let late = h.abs() * largest_of(end.len(), error);
         worse(late, norm)
+    }
+
+    fn error_alone(&self) -> f64 {
+        self.alone
     }
 
     fn error_after(

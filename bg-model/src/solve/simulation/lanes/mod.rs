@@ -171,7 +171,8 @@ impl<'a, O: Observer> Lane<'a, O> {
             until: run.sampling.next().min(run.span.t_end),
             left: run.limit.saturating_sub(run.attempts),
         };
-        let is_plain = run.monitor.is_plain() && run.has_loops_of(group.loops()) && !self.observer.looks_inside();
+        let is_plain =
+            !run.is_first && run.monitor.is_plain() && run.has_loops_of(group.loops()) && !self.observer.looks_inside();
         group.lead(place, lead, is_plain, self.method().frequency());
     }
 
@@ -217,7 +218,8 @@ impl<'a, O: Observer> Lane<'a, O> {
             }
             return Outcome::Again;
         }
-        if !(error <= 1.0 && is_fine) {
+        // Of a first step the run wants to know more.
+        if !(error <= 1.0 && is_fine) || self.run.is_first {
             return Outcome::Alone;
         }
         self.run.attempts += 1;
