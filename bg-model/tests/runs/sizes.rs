@@ -275,8 +275,8 @@ impl Observer for Beyond {
     }
 }
 
-/// From rest momenta move at once, positions later. Where only the former are looked at, the sizes of a first step are those of a free fall to
-/// the end of the run, and its tolerances so much too large.
+/// From rest momenta move at once, positions later. Where only the former are looked at, the sizes of a first step are
+/// those of a free fall to the end of the run, and its tolerances so much too large.
 #[test]
 fn from_rest_a_stiff_pin_is_followed_as_exactly_in_a_long_run() {
     let model = Swinging::new(SwingingParameters::default()).expect("in range");
