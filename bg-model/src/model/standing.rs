@@ -185,7 +185,9 @@ impl<'a> Standing<'a> {
     /// [`Misplaced::NoRotation`].
     pub fn rotated(&self, x: &[f64]) -> Result<Vec<f64>, Misplaced> {
         let orientations = orientations(self.model.description().states);
-        let kept: Vec<Vec<Vec<(usize, usize)>>> = orientations.iter().map(|entries| self.kept(entries)).collect();
+        let turned = if orientations.is_empty() { None } else { self.turned() };
+        let kept = |entries| turned.as_ref().map_or_else(Vec::new, |turned| Self::kept(entries, turned));
+        let kept: Vec<Vec<Vec<(usize, usize)>>> = orientations.iter().map(kept).collect();
         let worst = |x: &[f64]| {
             let off = orientations.iter().zip(&kept).map(|(entries, kept)| (self.off(entries, kept, x), entries.name));
             off.max_by(|a, b| a.0.total_cmp(&b.0))
@@ -205,17 +207,53 @@ impl<'a> Standing<'a> {
         Ok(x)
     }
 
-    /// The products of an orientation's columns and rows that keep their values in any motion: their rates vanish at
-    /// the start, whatever the momenta. Components that are no states are constants, or follow from others.
-    fn kept(&self, entries: &Entries) -> Vec<Vec<(usize, usize)>> {
-        let Some(mut x) = self.start.clone() else { return Vec::new() };
+    /// A state that has turned from the start, whatever the momenta, with its rates: there no component of an orientation
+    /// is 0, nor its rate, but where it stays so.
+    fn turned(&self) -> Option<[Vec<f64>; 2]> {
+        /// How much the fastest component turns in a step, and how many there are: together a part of a turn, after which an
+        /// orientation is still a rotation to far less than [`CLOSE`].
+        const STEP: f64 = 0.01;
+        const STEPS: usize = 16;
+        let mut x = self.start.clone()?;
         let states = self.model.description().states;
         for index in (0..x.len()).filter(|&index| matches!(states[index].kind, StateKind::Momentum(_))) {
             // Of irregular sizes, so that nothing cancels.
             x[index] += (1.0 + self.sizes[index]) * (0.5 + 0.37 * (index % 5) as f64);
         }
-        let mut rates = vec![0.0; x.len()];
-        self.model.rate(0.0, &x, &branches(self.model, 0.0, &x), &mut rates);
+        let turning: Vec<usize> =
+            (0..x.len()).filter(|&index| matches!(states[index].kind, StateKind::Orientation(..))).collect();
+        let negative = branches(self.model, self.t, &x);
+        let rates = |x: &[f64]| {
+            let mut rates = vec![0.0; x.len()];
+            self.model.rate(0.0, x, &negative, &mut rates);
+            rates
+        };
+        let moved = |x: &[f64], rates: &[f64], h: f64| {
+            let mut moved = x.to_vec();
+            turning.iter().for_each(|&index| moved[index] += h * rates[index]);
+            moved
+        };
+        for _ in 0..STEPS {
+            let first = rates(&x);
+            let fastest = turning.iter().map(|&index| first[index].abs()).fold(0.0, worse);
+            if !(fastest > 0.0 && fastest.is_finite()) {
+                break;
+            }
+            let h = STEP / fastest;
+            let second = rates(&moved(&x, &first, 0.5 * h));
+            let third = rates(&moved(&x, &second, 0.5 * h));
+            let fourth = rates(&moved(&x, &third, h));
+            for &index in &turning {
+                x[index] += h / 6.0 * (first[index] + 2.0 * (second[index] + third[index]) + fourth[index]);
+            }
+        }
+        let rates = rates(&x);
+        Some([x, rates])
+    }
+
+    /// The products of an orientation's columns and rows that keep their values in any motion: their rates vanish where
+    /// it has turned. Components that are no states are constants, or follow from others.
+    fn kept(entries: &Entries, [x, rates]: &[Vec<f64>; 2]) -> Vec<Vec<(usize, usize)>> {
         let is_kept = |product: &Vec<(usize, usize)>| {
             let parts = product.iter().flat_map(|&(a, b)| [x[a] * rates[b], rates[a] * x[b]]);
             let (sum, size) = parts.fold((0.0, 0.0), |(sum, size), part: f64| (sum + part, size + part.abs()));
