@@ -210,8 +210,8 @@ mod tests {
                 [first, libm::atan2(first, second), if is_negative { first } else { second }, libm::sin(y), -y, 7.5];
             assert_eq!(found.map(|number| number.value), expected);
             let by_x = if is_negative { 2.5 } else { 1.0 };
-            let slopes = [found[0], found[2], found[3], found[4]].map(|number| *number.slopes().as_ref());
-            assert_eq!(slopes, [[2.5, 0.0], [by_x, 0.0], [0.0, libm::cos(y)], [0.0, -1.0]].map(|of: [f64; 2]| of));
+            let slopes = [found[0], found[2], found[3], found[4]].map(|number| number.slopes());
+            assert_eq!(slopes, [[2.5, 0.0], [by_x, 0.0], [0.0, libm::cos(y)], [0.0, -1.0]]);
         }
     }
 }

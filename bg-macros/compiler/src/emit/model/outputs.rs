@@ -94,7 +94,7 @@ impl Emission<'_> {
 
     fn powers(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let values = self.values(Asked::rarely(&self.model.programs.running.powers, CONSTANTS));
+        let values = self.values(Asked::often(&self.model.programs.running.powers, CONSTANTS));
         quote! {
             fn powers(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> ::bg_model::system::Powers<S> {
                 let [supplied, dissipated] = #values;

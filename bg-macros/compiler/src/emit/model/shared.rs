@@ -7,7 +7,6 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::tabled::{Asked, CONSTANTS};
 use super::{Emission, Shape};
 
 /// What the start pose decides for a run, each an array of numbers of this many places: which rows are kept, on which
@@ -131,7 +130,7 @@ impl Emission<'_> {
     pub(super) fn reactions(&self) -> Option<TokenStream> {
         let Shape { n, g, .. } = &self.shape;
         let routine = &self.model.programs.running.reactions;
-        let (values, count) = (self.values(Asked::rarely(routine, CONSTANTS)), routine.results.len());
+        let (values, count) = (self.values(self.asked_reactions()), routine.results.len());
         self.where_shared(|_| {
             quote! {
                 fn reactions(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g]) -> [S; #count] {

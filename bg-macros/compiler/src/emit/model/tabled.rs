@@ -126,13 +126,18 @@ impl Emission<'_> {
     /// All routines that have a value by [`Self::values`].
     fn asked(&self) -> Vec<Asked<'_>> {
         let Programs { running, holding, impacts, sizes, .. } = &self.model.programs;
-        let Running { guards, reactions, outputs, project, settle, stored_energy, powers, .. } = running;
-        let often = [guards, outputs, project, settle, stored_energy].map(|of| Asked::often(of, CONSTANTS));
-        let rarely = [reactions, powers].map(|of| Asked::rarely(of, CONSTANTS));
+        let Running { guards, outputs, project, settle, stored_energy, powers, .. } = running;
+        let often = [guards, outputs, project, settle, stored_energy, powers].map(|of| Asked::often(of, CONSTANTS));
         let holding = holding.iter().map(|of| Asked::often(&of.routines[0], HOLDING));
         let impacts = impacts.iter().map(|of| Asked::rarely(&of.routines[0], IMPACTS));
         let sizes = Asked::often(&sizes.routines[0], SIZES);
-        often.into_iter().chain(rarely).chain(holding).chain(impacts).chain([sizes]).collect()
+        often.into_iter().chain([self.asked_reactions()]).chain(holding).chain(impacts).chain([sizes]).collect()
+    }
+
+    /// The reactions: samples ask for them where outputs read them, else pictures alone.
+    pub(super) fn asked_reactions(&self) -> Asked<'_> {
+        let Running { reactions, outputs, .. } = &self.model.programs.running;
+        Asked { routine: reactions, constants: CONSTANTS, is_rare: !names::reads_reactions(outputs) }
     }
 
     /// The reactions as an argument, declared and handed over, where the routine reads them.
