@@ -39,6 +39,7 @@ bond_graph! {
     /// A rod on a compliant pin, of any size: in the plane.
     pub graph Swinging {
         param size: m = 1, above 0; param heavy: kg = 1, above 0; param field: m/s^2 = 9.81;
+        param losses: Hz = 50, at least 0;
         gravity [0, -field, 0];
         ground { point pivot = [0, 0, 0]; }
         body rod {
@@ -46,11 +47,11 @@ bond_graph! {
             point end = [-size / 2, 0, 0]; start end at [0, 0, 0];
         }
         joint pin: revolute z (ground.pivot -> rod.end) {
-            stiffness heavy * 1e6; damping heavy * 50; tilt stiffness heavy * size * size * 1e4;
+            stiffness heavy * 1e6; damping heavy * losses; tilt stiffness heavy * size * size * 1e4;
         }
         observe { height: m = rod.position.y; pin.force }
         scenes only;
-        scene Swinging { expect planar; tune { size, heavy, field } }
+        scene Swinging { expect planar; tune { size, heavy, field, losses } }
     }
 }
 
@@ -190,7 +191,7 @@ fn a_circuit_of_another_speed_takes_the_same_steps_to_the_same_bits() {
 fn a_mechanism_of_another_size_takes_the_same_steps_to_the_same_bits() {
     for method in METHODS {
         let run = |size: f64, heavy: f64| {
-            let parameters = SwingingParameters { size, heavy, field: 9.81 * size };
+            let parameters = SwingingParameters { size, heavy, field: 9.81 * size, ..SwingingParameters::default() };
             let model = Swinging::new(parameters).expect("in range");
             let run = Simulation::new(&model).method(method).rtol(1e-7).every(0.01).until(0.3).run().expect("a run");
             measured(&run, &[size, heavy * size, heavy * size, heavy * size])
@@ -276,10 +277,10 @@ impl Observer for Beyond {
 }
 
 /// From rest momenta move at once, positions later. Where only the former are looked at, the sizes of a first step are
-/// those of a free fall to the end of the run, and its tolerances so much too large.
+/// those of a free fall to the end of the run, and its tolerances so much too large: BS5 erred by 165 at 1e-10.
 #[test]
 fn from_rest_a_stiff_pin_is_followed_as_exactly_in_a_long_run() {
-    let model = Swinging::new(SwingingParameters::default()).expect("in range");
+    let model = Swinging::new(SwingingParameters { losses: 0.0, ..SwingingParameters::default() }).expect("in range");
     let machine = model.machine();
     let start = machine.start().expect("a start");
     let force = |t: f64, x: &[f64]| {
@@ -298,7 +299,7 @@ fn from_rest_a_stiff_pin_is_followed_as_exactly_in_a_long_run() {
             let there = exact(&model, &[finish.t]).remove(0);
             let [found, exact] = [finish.x.as_slice(), &there].map(|x| force(finish.t, x));
             let off = (found[0] - exact[0]).hypot(found[1] - exact[1]) / exact[0].hypot(exact[1]) / rtol;
-            assert!(off < 3.0, "{method:?} at {rtol:e}: {off} tolerances at {} s", finish.t);
+            assert!(off < 10.0, "{method:?} at {rtol:e}: {off} tolerances at {} s", finish.t);
         }
     }
 }
