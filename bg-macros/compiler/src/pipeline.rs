@@ -303,7 +303,7 @@ mod tests {
     use super::*;
     use crate::source::syntax;
 
-    const GRAPH: &str = "graph G { param m: kg = 2; param k: N/m = 3; param size: m = 1, above 0;
+    const GRAPH: &str = "graph G { param m: kg = 2; param k: N/m = 3;
         1 j: translation; I mass = m start 1; C spring = k; j -> mass; j -> spring;
         observe { v: m/s = j.flow; } ";
 
@@ -327,7 +327,7 @@ mod tests {
             "scene A { observe { x: m = spring.effort; } }",
             "scenes only; scene A { tune { m } } scene B {}",
             "scene A {} scene A {}",
-            "R broken; scene A { expect states = 5; }",
+            "R broken = 2; scene A { expect states = 5; }",
         ];
         for rest in faulty {
             let text = |faults: Faults| faults.iter().map(ToString::to_string).collect::<Vec<_>>();
