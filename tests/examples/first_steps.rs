@@ -14,8 +14,12 @@ use bg_model::input::Input;
 use bg_model::integrator::{Dop853, Integrator, Point, Scale, Tolerances};
 use bg_model::simulation::{Observer, Samples, Settings, Span, drive};
 use bg_model::statistics::Statistics;
-use bond_graph_tests::models::double_pendulum::{RigidPendulum, RodAngles};
-use bond_graph_tests::models::slider_crank::{PlanarSliderCrank, RigidSliderCrank};
+use bond_graph_tests::models::double_pendulum::{
+    RigidPendulum, RigidPendulumParameters, RodAngles, RodAnglesParameters,
+};
+use bond_graph_tests::models::slider_crank::{
+    PlanarSliderCrank, PlanarSliderCrankParameters, RigidSliderCrank, RigidSliderCrankParameters,
+};
 use bond_graph_tests::support::example::{Example, examples, scenes};
 
 /// The span of the runs, s.
@@ -124,10 +128,10 @@ fn models() -> Vec<Example> {
     }
     bond_graph_tests::each_example!(add_examples);
     bond_graph_tests::each_scene!(add_scenes);
-    models.push(Example::of(&RodAngles::new(Default::default()).expect("defaults")));
-    models.push(Example::of(&RigidPendulum::new(Default::default()).expect("defaults")));
-    models.push(Example::of(&PlanarSliderCrank::new(Default::default()).expect("defaults")));
-    models.push(Example::of(&RigidSliderCrank::new(Default::default()).expect("defaults")));
+    models.push(Example::of(&RodAngles::new(RodAnglesParameters::default()).expect("defaults")));
+    models.push(Example::of(&RigidPendulum::new(RigidPendulumParameters::default()).expect("defaults")));
+    models.push(Example::of(&PlanarSliderCrank::new(PlanarSliderCrankParameters::default()).expect("defaults")));
+    models.push(Example::of(&RigidSliderCrank::new(RigidSliderCrankParameters::default()).expect("defaults")));
     models
 }
 
