@@ -133,8 +133,8 @@ impl Answerer {
             }
             Ok(Question::Compile { text, graph, scene }) => {
                 self.compiled.take();
-                let scene = Some(scene.clone().unwrap_or_default());
-                let wanted = Wanted { scene, counted: Counted::Made, most: None };
+                let wanted =
+                    Wanted { scene: Some(scene.clone().unwrap_or_default()), counted: Counted::Made, most: None };
                 self.checked(text, &wanted, Some((graph, scene)))
             }
             Ok(Question::Report(run)) => json(&self.told(|program, scene| {
