@@ -76,7 +76,7 @@ fn runs_and_tables_are_those_of_the_compiled_mechanism() {
         { "t_end": 1.0, "step": 0.1, "method": "auto", "rtol": 1e-8, "atol": null, "fixed_step": 1e-4 } }"#;
     assert_eq!(live::answer(&bare, order), live::answer(&compiled, order));
     let range =
-        calls::run(&bare, &Asked { set: [("mass".to_owned(), -1.0)].into_iter().collect(), ..asked("place") }, &|| {
+        calls::run(&bare, &Asked { set: [("mass".to_owned(), -1.0)].into_iter().collect(), ..asked("place") }, &|_| {
             true
         });
     assert!(range.unwrap_err().to_string().contains("parameter `mass` = -1 kg is out of range"));
