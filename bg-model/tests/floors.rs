@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Rooms from the ground up; those of one floor do not know each other.
 const FLOORS: [&[&str]; 17] = [
     &["model::scalar", "model::requirement", "model::holding"],
-    &["model::drawing", "model::nearest", "model::joined"],
+    &["model::drawing", "model::nearest", "model::joined", "model::tabled"],
     &["model::description"],
     &[
         "model::iteration",

@@ -7,10 +7,10 @@
 use crate::expr::{Id, Node, Pool, Symbol, partial, substitute};
 use crate::system::equations::StateEquations;
 use crate::system::equations::impact::Struck;
+use crate::system::equations::stop::RETURN;
 use crate::system::inverse::InverseDynamics;
 use crate::system::jacobian::Entry;
 use crate::system::link::{Locked, Moved};
-use crate::system::reduce::PLACE;
 
 /// How far from 1 a factor may be that is 1 but for rounding.
 const ROUNDING: f64 = 1e-12;
@@ -100,7 +100,7 @@ fn sign(pool: &mut Pool, stop: &Struck, own: &Moved) -> Option<f64> {
 fn rest(pool: &mut Pool, own: &mut Moved, (stop, sign): (&Struck, f64), multiplier: Symbol) {
     let (zero, one, switch) = (pool.zero(), pool.one(), stop.rebound.switch);
     let gap = stop.slip.gap.unwrap_or(zero);
-    let asked = pool.linear(0.0, &[(stop.slip.flow, -2.0 * PLACE * sign), (gap, -PLACE * PLACE * sign)]);
+    let asked = pool.linear(0.0, &[(stop.slip.flow, -2.0 * RETURN * sign), (gap, -RETURN * RETURN * sign)]);
     let before = own.locked.unwrap_or(Locked { acts: zero, rate: zero });
     own.locked =
         Some(Locked { acts: pool.select(switch, before.acts, one), rate: pool.select(switch, before.rate, asked) });

@@ -28,7 +28,7 @@ mod shown;
 mod signals;
 pub mod solution;
 mod solving;
-mod stop;
+pub mod stop;
 mod storage;
 mod tables;
 mod terms;

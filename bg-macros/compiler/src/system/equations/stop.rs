@@ -17,6 +17,10 @@ use crate::graph::{Allowed, ElementKind, NodeId};
 use crate::system::Value;
 use crate::system::requirements::Subject;
 
+/// The rate with which truncation of what rests decays, 1/s: slow, so that no explicit step is the shorter for it, and
+/// critically damped, since a stop knows its place.
+pub const RETURN: f64 = 1.0;
+
 impl Signals<'_> {
     /// Whether a residual sink acts one way only.
     pub(super) fn is_stop(&self, node: NodeId) -> bool {

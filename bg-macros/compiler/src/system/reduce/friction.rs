@@ -11,9 +11,6 @@ use crate::system::equations::Reaction;
 /// Rate at which a flow that truncation leaves decays while it sticks, 1/s: slow, so that no explicit step is the
 /// shorter for it.
 pub(super) const DECAY: f64 = 1.0;
-/// The rate with which truncation of what rests decays, 1/s: as slow, and critically damped, since a stop knows its
-/// place.
-pub(in crate::system) const PLACE: f64 = 1.0;
 /// The part of its diagonal entry below which a pivot of dry friction counts as zero: others hold that motion already.
 const PART: f64 = 1e-10;
 

@@ -26,7 +26,6 @@ mod zero;
 use crate::expr::{Branch, Id, Node, Pool, Symbol};
 use crate::system::equations::StateEquations;
 
-pub(in crate::system) use friction::PLACE;
 pub use reaction::solve as solve_reactions;
 pub use report::{Count, Fate, Kept, Report};
 

@@ -14,6 +14,7 @@ use crate::expr::{Id, Pool, Symbol, derivative, partial, substitute};
 use crate::system::equations::definite::Factors;
 use crate::system::equations::impact::{Impacts, Struck};
 use crate::system::equations::solution::Solution;
+use crate::system::equations::stop::RETURN;
 use crate::system::equations::{Kind, Reaction, Slip, State, StateEquations};
 
 /// Solves for all multipliers. They stay symbols in the equations until these are closed.
@@ -116,7 +117,7 @@ fn accelerations(equations: &mut StateEquations, reactions: &[Reaction], rates: 
         .map(|(Reaction { slip, switched, rebound, .. }, &rate)| {
             let gap = slip.gap.unwrap_or(zero);
             let (decay, back) = match (switched, rebound) {
-                (_, Some(_)) => (2.0 * friction::PLACE, friction::PLACE * friction::PLACE),
+                (_, Some(_)) => (2.0 * RETURN, RETURN * RETURN),
                 (Some(_), None) => (friction::DECAY, 0.0),
                 (None, None) => (2.0 * rate_of_decay, rate_of_decay * rate_of_decay),
             };
