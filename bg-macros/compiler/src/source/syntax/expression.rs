@@ -32,9 +32,6 @@ const GROUP: Place = Place { name: "the group", words: &[], list: false };
 /// Operators that compare or join conditions.
 const CONDITION: [&str; 8] = ["<", "<=", ">", ">=", "==", "!=", "&&", "||"];
 
-/// What else joins two of them in other languages.
-const JOINING: [&str; 4] = ["and", "or", "&", "|"];
-
 /// An expression and the height of its tree.
 struct Tall {
     expression: Expression,
@@ -239,12 +236,20 @@ impl Cursor<'_> {
         let left = self.binary(0)?;
         let comparison = self.comparison()?;
         let right = self.binary(0)?;
-        let joining = JOINING.into_iter().find(|&word| self.is(word) || self.word() == Some(word));
-        match self.condition_symbol().or(joining) {
-            Some(operator) => {
-                Err(self.note(self.span(), &SyntaxFault::SecondComparison { operator: operator.to_owned() }))
-            }
+        match self.joining() {
+            Some(operator) => Err(self.note(self.span(), &SyntaxFault::SecondComparison { operator })),
             None => Ok((left, comparison, right)),
+        }
+    }
+
+    /// What stands ahead and joins two comparisons, also in other languages.
+    fn joining(&self) -> Option<String> {
+        match self.peek() {
+            Some(TokenKind::Symbol(symbol)) if CONDITION.contains(symbol) || matches!(*symbol, "&" | "|") => {
+                Some((*symbol).to_owned())
+            }
+            Some(TokenKind::Word(word)) if matches!(word.as_str(), "and" | "or") => Some(word.clone()),
+            _ => None,
         }
     }
 
