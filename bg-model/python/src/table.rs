@@ -31,6 +31,9 @@ pub enum Values {
     Text(Vec<String>),
 }
 
+/// What a table is restored from: columns, units, what else is known.
+type Parts = (Py<PyDict>, Py<PyDict>, Py<PyDict>);
+
 impl Table {
     /// Of columns with their names and units. Their values are moved, not copied.
     ///
@@ -67,7 +70,7 @@ impl Table {
     }
 
     /// For pickle, and so for processes and other machines.
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, (Py<PyDict>, Py<PyDict>, Py<PyDict>)) {
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, Parts) {
         let (py, of) = (slf.py(), slf.get());
         (slf.get_type(), (of.columns.clone_ref(py), of.units.clone_ref(py), of.info.clone_ref(py)))
     }
