@@ -12,6 +12,19 @@ use crate::source::scene;
 pub(crate) const PARAMETERS: &str = "Parameters";
 pub(crate) const INPUTS: &str = "Inputs";
 
+/// The words that Rust reserves in any edition, as syn has them (<https://doc.rust-lang.org/reference/keywords.html>).
+const RESERVED: [&str; 52] = [
+    "Self", "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do",
+    "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "if", "impl", "in", "let", "loop", "macro",
+    "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "static", "struct", "super",
+    "trait", "true", "try", "type", "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];
+
+/// Whether Rust reserves `word`, so that no item or field can have it as its name.
+pub(crate) fn is_reserved(word: &str) -> bool {
+    word.starts_with("r#") || RESERVED.contains(&word)
+}
+
 /// The field of a parameter or input: its path as one word, `front_stiffness` of `front.stiffness`, `link_3_length` of
 /// `link[3].length`.
 pub(crate) fn field(name: &str) -> String {
@@ -151,6 +164,15 @@ fn fault((name, own): (&str, Struct), (other, kind): (&str, Struct)) -> NameFaul
 mod tests {
     use super::*;
     use crate::source::syntax::parse_leniently;
+
+    #[test]
+    fn what_is_reserved_is_no_identifier_to_syn() {
+        let is_identifier = |word: &str| syn::parse_str::<syn::Ident>(word).is_ok();
+        assert!(RESERVED.is_sorted() && RESERVED.iter().all(|word| !is_identifier(word)));
+        for word in ["union", "auto", "raw", "safe", "gen", "graph", "_x", "selfish", "macro_rules", "r#type", "f64"] {
+            assert_eq!(is_reserved(word), word.starts_with("r#") || !is_identifier(word), "{word}");
+        }
+    }
 
     fn said(text: &str) -> (Vec<String>, Vec<(usize, String)>) {
         let (source, faults) = parse_leniently(text.parse().expect("tokens"));

@@ -14,6 +14,7 @@ use super::{
 };
 use crate::fault::{Fault, Faults};
 use crate::source::ast::{Heard, Name, Spoken, Words};
+use crate::source::names::is_reserved;
 use crate::source::numbers::symbol_for;
 
 /// The proof that a fault has been noted.
@@ -456,33 +457,6 @@ impl Cursor<'_> {
             if block && ends_with_block && !goes_on {
                 return;
             }
-        }
-    }
-}
-
-/// The words that Rust reserves in any edition, as syn has them (<https://doc.rust-lang.org/reference/keywords.html>).
-const RESERVED: [&str; 52] = [
-    "Self", "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do",
-    "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "if", "impl", "in", "let", "loop", "macro",
-    "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "static", "struct", "super",
-    "trait", "true", "try", "type", "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
-];
-
-/// Whether Rust reserves `word`, so that no item or field can have it as its name.
-pub(super) fn is_reserved(word: &str) -> bool {
-    word.starts_with("r#") || RESERVED.contains(&word)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_reserved_is_no_identifier_to_syn() {
-        let is_identifier = |word: &str| syn::parse_str::<syn::Ident>(word).is_ok();
-        assert!(RESERVED.is_sorted() && RESERVED.iter().all(|word| !is_identifier(word)));
-        for word in ["union", "auto", "raw", "safe", "gen", "graph", "_x", "selfish", "macro_rules", "r#type", "f64"] {
-            assert_eq!(is_reserved(word), word.starts_with("r#") || !is_identifier(word), "{word}");
         }
     }
 }

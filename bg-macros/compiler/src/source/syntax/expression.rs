@@ -9,11 +9,12 @@ use proc_macro2::{Delimiter, Span};
 
 use super::{
     SyntaxFault,
-    cursor::{Cursor, Parsed, Place, is_reserved},
+    cursor::{Cursor, Parsed, Place},
     token::TokenKind,
 };
 use crate::fault::near_miss;
 use crate::source::ast::{BinaryOperator, Choice, Comparison, Expression, ExpressionKind, Operation};
+use crate::source::names::is_reserved;
 use crate::source::words::{COMPARISONS, OPERATORS, strength, value_of};
 
 /// The greatest height of an expression's tree, far beyond any law that a human writes.

@@ -6,7 +6,7 @@ use proc_macro2::{Delimiter, Ident, Punct, Spacing, Span, TokenStream, TokenTree
 
 use super::{
     SyntaxFault,
-    cursor::{Cursor, Parsed, Place, Repetition, is_reserved},
+    cursor::{Cursor, Parsed, Place, Repetition},
     documentation::Documentation,
     statement::{self, OPERATOR},
     token::{TokenKind, joined, tokens},
@@ -15,6 +15,7 @@ use crate::source::ast::{
     Argument, For, Foreign, Item, Junction, JunctionKind, Name, Part, PartPath, Port, Source, Start, StartKind, Use,
     Written,
 };
+use crate::source::names::is_reserved;
 use crate::source::visibility::Visibility;
 use crate::source::words::{STARTS, value_of};
 
