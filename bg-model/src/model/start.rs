@@ -7,7 +7,6 @@
 
 use alloc::vec;
 use alloc::vec::Vec;
-use core::any::Any;
 
 use crate::model::assembly::{AssemblyError, Closed, Gap, close};
 use crate::model::clock;
@@ -18,7 +17,7 @@ use crate::model::nearest::lifted;
 use crate::model::reactions::{self, fit};
 use crate::model::requirement::{Requirement, require};
 use crate::model::sampled;
-use crate::model::scalar::{DoubleDouble, Gradient, KnownAs, Scalar};
+use crate::model::scalar::{DoubleDouble, Gradient, Scalar, compiled_for};
 
 /// A routine of parameters and unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -138,23 +137,8 @@ static DOUBLES: Functions<f64> = Functions::ALL;
 static DOUBLE_DOUBLES: Functions<DoubleDouble> = Functions::ALL;
 static GRADIENTS: Functions<Gradient> = Functions::ALL;
 
-/// Those of numbers that this crate knows, compiled here; those of others, compiled with the caller. Only one branch is
-/// ever compiled: each asks a constant.
 fn functions<S: Scalar>() -> &'static Functions<S> {
-    if const { matches!(S::KNOWN_AS, KnownAs::Doubles) } {
-        known(&DOUBLES)
-    } else if const { matches!(S::KNOWN_AS, KnownAs::DoubleDoubles) } {
-        known(&DOUBLE_DOUBLES)
-    } else if const { matches!(S::KNOWN_AS, KnownAs::Gradients) } {
-        known(&GRADIENTS)
-    } else {
-        const { &Functions::ALL }
-    }
-}
-
-/// The same table in numbers that are what they are known as.
-fn known<S: Scalar>(table: &'static dyn Any) -> &'static Functions<S> {
-    table.downcast_ref().expect("numbers are what they are known as")
+    compiled_for!(S => Functions<S>, [&DOUBLES, &DOUBLE_DOUBLES, &GRADIENTS], const { &Functions::ALL })
 }
 
 /// Writes the start state of a model. The kinetic energy that impulses have taken to make it fit, J. What no unknown

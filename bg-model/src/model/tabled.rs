@@ -18,9 +18,8 @@
 //! | 8 | switch, a, b | a where the switch is negative, else b |
 
 use alloc::vec::Vec;
-use core::any::Any;
 
-use crate::model::scalar::{DoubleDouble, Gradient, KnownAs, Scalar};
+use crate::model::scalar::{DoubleDouble, Gradient, KnownAs, Scalar, compiled_for};
 
 /// Four bytes, the lowest first.
 pub type Word = [u8; 4];
@@ -64,22 +63,12 @@ static GRADIENTS: Evaluate<Gradient> = evaluated;
 /// # Panics
 /// The table is not of a program that reads so much and gives so many results.
 pub fn evaluate<S: Scalar>(table: &Table, read: [&[S]; 3], negative: &[S::Switch], to: &mut [S]) {
-    // Only one branch is ever compiled: each asks a constant.
-    let evaluate = if const { matches!(S::KNOWN_AS, KnownAs::Doubles) } {
-        known(&DOUBLES)
-    } else if const { matches!(S::KNOWN_AS, KnownAs::DoubleDoubles) } {
-        known(&DOUBLE_DOUBLES)
-    } else if const { matches!(S::KNOWN_AS, KnownAs::Gradients) } {
-        known(&GRADIENTS)
-    } else {
-        evaluated
-    };
+    let evaluate = compiled_for!(
+        S => Evaluate<S>,
+        [&DOUBLES, &DOUBLE_DOUBLES, &GRADIENTS],
+        const { &(evaluated::<S> as Evaluate<S>) }
+    );
     evaluate(table, read, negative, to);
-}
-
-/// The same function in numbers that are what they are known as.
-fn known<S: Scalar>(evaluate: &'static dyn Any) -> Evaluate<S> {
-    *evaluate.downcast_ref().expect("numbers are what they are known as")
 }
 
 fn evaluated<S: Scalar>(table: &Table, read: Inputs<'_, S>, negative: &[S::Switch], to: &mut [S]) {

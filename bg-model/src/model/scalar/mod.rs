@@ -19,6 +19,7 @@ mod pair;
 mod single;
 pub(crate) mod slopes;
 
+use core::any::Any;
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -126,6 +127,30 @@ pub enum KnownAs {
     Gradients,
     /// Any others: compiled with who starts a model in them.
     Other,
+}
+
+/// Of what this crate compiles for the numbers that it knows, a static for doubles, double-doubles and gradients each, that
+/// of the numbers `$scalar`, which is a `$kind`; for other numbers `$other`, compiled with the caller. Only one branch is
+/// ever compiled: each asks a constant.
+macro_rules! compiled_for {
+    ($scalar:ty => $kind:ty, [$doubles:expr, $double_doubles:expr, $gradients:expr], $other:expr) => {{
+        use $crate::model::scalar::{KnownAs, Scalar, known};
+        if const { matches!(<$scalar as Scalar>::KNOWN_AS, KnownAs::Doubles) } {
+            known::<$kind>($doubles)
+        } else if const { matches!(<$scalar as Scalar>::KNOWN_AS, KnownAs::DoubleDoubles) } {
+            known::<$kind>($double_doubles)
+        } else if const { matches!(<$scalar as Scalar>::KNOWN_AS, KnownAs::Gradients) } {
+            known::<$kind>($gradients)
+        } else {
+            $other
+        }
+    }};
+}
+pub(crate) use compiled_for;
+
+/// The same static in numbers that are what they are known as.
+pub(crate) fn known<T: Any>(compiled: &'static dyn Any) -> &'static T {
+    compiled.downcast_ref().expect("numbers are what they are known as")
 }
 
 impl Scalar for f64 {
