@@ -10,12 +10,17 @@
 //! | module | question |
 //! |---|---|
 //! | [`model`] | what the module's functions are |
+//! | `asked`, `given` | what they are asked and give, in Python's words |
+//! | [`shown`] | pictures and pages that they give |
 //! | [`table`] | what they give: columns by name |
 //! | [`waiting`] | how Ctrl-C reaches what runs without Python, and how far it is |
 //!
 //! Numbers are moved into NumPy arrays, not copied. While a model runs, other Python threads do.
 
+mod asked;
+mod given;
 pub mod model;
+pub mod shown;
 pub mod table;
 pub mod waiting;
 
@@ -57,8 +62,8 @@ pub fn fill(module: &Bound<'_, PyModule>, program: impl Fn() -> Program + Send +
 /// Python's.
 pub fn classes(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
-    module.add("RunFailed", py.get_type::<model::RunFailed>())?;
-    for class in [py.get_type::<table::Table>(), py.get_type::<model::Picture>(), py.get_type::<model::Page>()] {
+    module.add("RunFailed", py.get_type::<given::RunFailed>())?;
+    for class in [py.get_type::<table::Table>(), py.get_type::<shown::Picture>(), py.get_type::<shown::Page>()] {
         class.setattr("__module__", module.name()?)?;
         module.add(class.name()?.to_str()?, class)?;
     }

@@ -3,35 +3,22 @@
 //! In: keyword arguments. Out: tables; or `ValueError` with the sentence that the command line would say.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use bg_model::integrator::Integrator;
-use bg_model::nalgebra::DMatrix;
-use bg_model::run::State;
 use bg_workbench::Program;
-use bg_workbench::calls::{self, Asked, Begin, Fit, Number, Ran};
-use bg_workbench::files::head::name_and_unit;
-use bg_workbench::files::parquet;
-use bg_workbench::hint;
-use bg_workbench::inputs::Named;
+use bg_workbench::calls::{self, Asked, Fit, Number, Ran};
 use bg_workbench::optimize;
 use bg_workbench::sweep::folder::{Folder, Kind};
-use bg_workbench::sweep::plan::Plan;
-use bg_workbench::sweep::{Outcome, Share, recipe, shown, sweep};
-use numpy::{PyArray1, PyArrayMethods};
+use bg_workbench::sweep::{Share, shown};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::PyDict;
 
+use crate::asked::{Texts, Work, asked, integrated, measured, source};
+use crate::given::{about_run, array, loaded, of_parquet, refused, run_failed, table, with_heads};
+use crate::shown::{Page, Picture};
 use crate::table::{Table, Values};
-use crate::waiting::{Seen, interruptible};
-
-pyo3::create_exception!(
-    bg_python,
-    RunFailed,
-    PyValueError,
-    "A run that stopped before its end; `run` has what was reached."
-);
+use crate::waiting::interruptible;
 
 /// The functions that a module has.
 pub const FUNCTIONS: [&str; 17] = [
@@ -54,42 +41,6 @@ pub const FUNCTIONS: [&str; 17] = [
     "read_sweep",
 ];
 
-/// A plan, as a file or as text.
-enum Source {
-    File(PathBuf),
-    Text(String),
-}
-
-/// What is to be done of a sweep.
-struct Work {
-    plan: Source,
-    out: PathBuf,
-    share: Share,
-    threads: usize,
-}
-
-impl Source {
-    fn read<'a>(&self, program: &'a Program) -> Result<Plan<'a>, String> {
-        let plan = match self {
-            Self::File(path) => Plan::read(program, path),
-            Self::Text(text) => Plan::parse(program, "the plan", Path::new(""), text.clone()),
-        };
-        plan.map_err(|fault| fault.to_string())
-    }
-}
-
-impl Work {
-    /// Does it as long as who waits for it says so.
-    fn done(&self, program: &Program, seen: &Seen) -> Result<Outcome, String> {
-        let plan = self.plan.read(program)?;
-        let folder = Folder::claim(&self.out, &recipe::of(program, &plan)).map_err(|fault| fault.to_string())?;
-        sweep(program, &plan, &folder, self.share, self.threads, &|done, all| {
-            seen.done(done as f64 / all.max(1) as f64)
-        })
-        .map_err(|fault| fault.to_string())
-    }
-}
-
 /// A model, whose methods are the functions of its module.
 #[pyclass(frozen)]
 pub struct Model {
@@ -101,64 +52,11 @@ impl Model {
     pub fn new(program: impl Fn() -> Program + Send + Sync + 'static) -> Self {
         Self { program: Box::new(program) }
     }
-}
 
-/// What cannot be done, as Python raises it.
-fn refused(fault: impl ToString) -> PyErr {
-    PyValueError::new_err(fault.to_string())
-}
-
-/// How a run is asked for in Python; what is not given is as on the command line.
-fn asked(
-    scene: Option<String>,
-    set: Option<BTreeMap<String, f64>>,
-    inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-    start: &str,
-    parameters: Option<BTreeMap<String, f64>>,
-) -> PyResult<Asked> {
-    let inputs = inputs.unwrap_or_default().into_iter();
-    let inputs =
-        inputs.map(|(name, value)| Ok(format!("{name}={}", value.str()?))).collect::<PyResult<Vec<String>>>()?;
-    let mut set = set.unwrap_or_default();
-    set.extend(parameters.unwrap_or_default());
-    let start = match start {
-        "model" => Begin::Model,
-        "equilibrium" => Begin::Equilibrium,
-        state if state.trim_start().starts_with('{') => {
-            Begin::At(State::from_json(state).map_err(|fault| PyValueError::new_err(format!("start: {fault}")))?)
-        }
-        other => {
-            let fault =
-                format!("start {other:?}: give \"model\", \"equilibrium\" or a state, as info[\"state\"] of a run");
-            return Err(PyValueError::new_err(fault));
-        }
-    };
-    Ok(Asked { scene, set, inputs, start, ..Asked::default() })
-}
-
-/// How it is integrated, where that is given.
-fn integrated(
-    asked: &mut Asked,
-    t_end: Option<f64>,
-    step: Option<f64>,
-    method: Option<&str>,
-    hint: Option<PathBuf>,
-    rtol: Option<f64>,
-    atol: Option<f64>,
-) -> PyResult<()> {
-    let integration = &mut asked.integration;
-    integration.t_end = t_end.unwrap_or(integration.t_end);
-    integration.step = step.unwrap_or(integration.step);
-    integration.rtol = rtol.unwrap_or(integration.rtol);
-    integration.atol = atol;
-    if let Some(method) = method {
-        integration.method = method.parse().map_err(|fault| PyValueError::new_err(format!("method: {fault}")))?;
+    /// Makes a run, as far as it goes.
+    fn ran(&self, py: Python<'_>, asked: &Asked) -> PyResult<Ran> {
+        interruptible(py, |seen| calls::run(&(self.program)(), asked, &|part| seen.done(part)))?.map_err(refused)
     }
-    if let Some(hint) = hint {
-        let read = hint::read(&hint.to_string_lossy());
-        integration.hint = Some(read.map_err(|fault| PyValueError::new_err(format!("hint {hint:?}: {fault}")))?);
-    }
-    Ok(())
 }
 
 #[pymethods]
@@ -211,8 +109,7 @@ impl Model {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let mut ran = interruptible(py, |seen| calls::run(&(self.program)(), &asked, &|part| seen.done(part)))?
-            .map_err(refused)?;
+        let mut ran = self.ran(py, &asked)?;
         let failure = ran.failure.take();
         let table = table(py, ran)?;
         match failure {
@@ -250,8 +147,7 @@ impl Model {
         let t_end = asked.start.time() + dt;
         integrated(&mut asked, Some(t_end), Some(dt), method, hint, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let mut ran = interruptible(py, |seen| calls::run(&(self.program)(), &asked, &|part| seen.done(part)))?
-            .map_err(refused)?;
+        let mut ran = self.ran(py, &asked)?;
         if let Some(failure) = ran.failure.take() {
             return Err(run_failed(py, &failure, table(py, ran)?)?);
         }
@@ -381,7 +277,7 @@ impl Model {
     ) -> PyResult<Bound<'py, PyAny>> {
         let asked = asked(scene, set, inputs, "model", parameters)?;
         let space = interruptible(py, |_| calls::linearize(&(self.program)(), &asked, at))?.map_err(refused)?;
-        let linear = py.import("json")?.call_method1("loads", (space.json(),))?;
+        let linear = loaded(py, &space.json())?;
         for (name, matrix) in [("a", &space.a), ("b", &space.b), ("c", &space.c), ("d", &space.d)] {
             linear.set_item(name, array(py, matrix)?)?;
         }
@@ -489,7 +385,7 @@ impl Model {
         let all = |texts: Option<Texts>| texts.map(Texts::all).unwrap_or_default();
         let fit = Fit { data: measured(data)?, parameters: fit.all(), bounds: all(bounds), columns: all(columns) };
         let found = interruptible(py, |_| calls::identify(&(self.program)(), &asked, &fit))?.map_err(refused)?;
-        py.import("json")?.call_method1("loads", (found.to_string(),))
+        loaded(py, &found.to_string())
     }
 
     /// Find the parameters with which a number of a run is least or largest, by exact derivatives.
@@ -529,7 +425,7 @@ impl Model {
         let goals = optimize::Asked { minimize, maximize, subject, by, starts, points, steps, threads };
         let found = interruptible(py, |seen| calls::optimize(&(self.program)(), &asked, &goals, &|| seen.goes_on()))?;
         let (sought, found) = found.map_err(refused)?;
-        let told = py.import("json")?.call_method1("loads", (optimize::report::json(&sought, &found).to_string(),))?;
+        let told = loaded(py, &optimize::report::json(&sought, &found).to_string())?;
         told.set_item("trials", of_parquet(py, optimize::report::trials(&sought, &found), PyDict::new(py))?)?;
         Ok(told)
     }
@@ -615,186 +511,4 @@ impl Model {
         info.set_item("sweep", recipe)?;
         of_parquet(py, table, info)
     }
-}
-
-/// A picture, which a notebook shows.
-#[pyclass(frozen)]
-pub struct Picture {
-    /// The picture as SVG.
-    #[pyo3(get)]
-    svg: String,
-}
-
-#[pymethods]
-impl Picture {
-    /// What a notebook shows.
-    fn _repr_svg_(&self) -> &str {
-        &self.svg
-    }
-
-    /// Write it into a file.
-    fn save(&self, path: PathBuf) -> PyResult<()> {
-        Ok(std::fs::write(path, &self.svg)?)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Picture of {} characters; save(path) writes it>", self.svg.len())
-    }
-}
-
-/// A page, which a notebook shows.
-#[pyclass(frozen)]
-pub struct Page {
-    /// The page as HTML, in one text with all that it needs.
-    #[pyo3(get)]
-    html: String,
-}
-
-#[pymethods]
-impl Page {
-    /// What a notebook shows: the page in a frame of its own.
-    fn _repr_html_(&self) -> String {
-        let text = self.html.replace('&', "&amp;").replace('"', "&quot;");
-        format!("<iframe srcdoc=\"{text}\" style=\"width: 100%; height: 40em; border: 0\"></iframe>")
-    }
-
-    /// Write it into a file.
-    fn save(&self, path: PathBuf) -> PyResult<()> {
-        Ok(std::fs::write(path, &self.html)?)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("<Page of {} characters; save(path) writes it>", self.html.len())
-    }
-}
-
-/// A text, or several.
-#[derive(FromPyObject)]
-enum Texts {
-    One(String),
-    Several(Vec<String>),
-}
-
-impl Texts {
-    fn all(self) -> Vec<String> {
-        match self {
-            Self::One(text) => vec![text],
-            Self::Several(texts) => texts,
-        }
-    }
-}
-
-/// A table with the units that its metadata have.
-fn of_parquet(py: Python<'_>, table: parquet::Table, info: Bound<'_, PyDict>) -> PyResult<Table> {
-    let units = table.texts.iter().find(|(name, _)| name == "units").map(|(_, text)| text.as_str());
-    let units: BTreeMap<String, String> = serde_json::from_str(units.unwrap_or("{}")).unwrap_or_default();
-    let unit = |column: parquet::Column| {
-        let unit = units.get(&column.name).cloned().unwrap_or_default();
-        (column.name, unit, of_column(column.values))
-    };
-    Table::new(py, table.columns.into_iter().map(unit), info)
-}
-
-/// A table with the units that its heads have.
-fn with_heads(py: Python<'_>, table: parquet::Table) -> PyResult<Table> {
-    let columns = table.columns.into_iter().map(|parquet::Column { name, values }| {
-        let (name, unit) = name_and_unit(&name);
-        (name.to_owned(), unit.unwrap_or_default().to_owned(), of_column(values))
-    });
-    Table::new(py, columns, PyDict::new(py))
-}
-
-fn of_column(values: parquet::Values) -> Values {
-    match values {
-        parquet::Values::Real(values) => Values::Real(values),
-        parquet::Values::Whole(values) => Values::Whole(values),
-        parquet::Values::Text(values) => Values::Text(values),
-    }
-}
-
-/// A plan from a path or a dict.
-fn source(plan: &Bound<'_, PyAny>) -> PyResult<Source> {
-    if !plan.is_instance_of::<PyDict>() {
-        return Ok(Source::File(plan.extract()?));
-    }
-    let text: String = plan.py().import("json")?.call_method1("dumps", (plan,))?.extract()?;
-    calls::toml_of_json(&text).map(Source::Text).map_err(refused)
-}
-
-/// What was measured, as the text of a CSV file: read from a path, or of columns by name.
-fn measured(data: &Bound<'_, PyAny>) -> PyResult<String> {
-    let Ok(columns) = data.getattr("items") else {
-        let path: PathBuf = data.extract()?;
-        return Ok(std::fs::read_to_string(path)?);
-    };
-    let mut named = Vec::new();
-    for item in columns.call0()?.try_iter()? {
-        let (name, values): (String, Vec<f64>) = item?.extract()?;
-        named.push((name, values));
-    }
-    named.sort_by_key(|(name, _)| name != "t");
-    let heads: Vec<&str> = named.iter().map(|(name, _)| name.as_str()).collect();
-    let rows = named.iter().map(|(_, values)| values.len()).max().unwrap_or_default();
-    if let Some((name, values)) = named.iter().find(|(_, values)| values.len() != rows) {
-        let fault = format!("data: the column `{name}` has {} values, another one {rows}", values.len());
-        return Err(PyValueError::new_err(fault));
-    }
-    let field = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
-    let row = |row| named.iter().map(|(_, values)| field(values[row])).collect::<Vec<_>>().join(",");
-    let lines: Vec<String> = std::iter::once(heads.join(",")).chain((0..rows).map(row)).collect();
-    Ok(lines.join("\n"))
-}
-
-/// A run that stopped before its end, with what was reached.
-fn run_failed(py: Python<'_>, failure: &str, table: Table) -> PyResult<PyErr> {
-    let failed = RunFailed::new_err(format!("the run failed: {failure}"));
-    failed.value(py).setattr("run", table)?;
-    Ok(failed)
-}
-
-/// How a run was integrated, what it cost, where it ended, what its inputs were.
-fn about_run<'py>(py: Python<'py>, Ran { run, inputs, .. }: &Ran) -> PyResult<Bound<'py, PyDict>> {
-    let info = PyDict::new(py);
-    info.set_item("inputs", named(py, inputs)?)?;
-    let statistics = &run.statistics;
-    info.set_item("methods", PyList::new(py, run.methods.iter().map(|change| (change.t, change.method)))?)?;
-    info.set_item("hint", run.hint().map(Integrator::name))?;
-    info.set_item("rtol", run.request.rtol)?;
-    info.set_item("atol", run.request.atol)?;
-    info.set_item("steps", statistics.steps)?;
-    info.set_item("rejected", statistics.rejected)?;
-    info.set_item("rate_evaluations", statistics.rate_evaluations)?;
-    info.set_item("wall_time", run.wall.as_secs_f64())?;
-    info.set_item("state", run.last.to_json().map_err(refused)?)?;
-    info.set_item("events", PyArray1::from_slice(py, &run.recording.events))?;
-    Ok(info)
-}
-
-/// The inputs by name, each a dict as the command line writes it into a summary's JSON.
-fn named<'py>(py: Python<'py>, inputs: &[Named]) -> PyResult<Bound<'py, PyDict>> {
-    let loads = py.import("json")?.getattr("loads")?;
-    let all = PyDict::new(py);
-    for input in inputs {
-        let text = serde_json::to_string(input).map_err(refused)?;
-        let one = loads.call1((text,))?;
-        one.del_item("name")?;
-        all.set_item(input.name, one)?;
-    }
-    Ok(all)
-}
-
-/// A run as columns.
-fn table(py: Python<'_>, ran: Ran) -> PyResult<Table> {
-    let info = about_run(py, &ran)?;
-    let recording = ran.run.recording;
-    let columns = recording.columns.into_iter().map(|column| (column.name, column.unit, Values::Real(column.values)));
-    let t = ("t".to_owned(), "s".to_owned(), Values::Real(recording.times));
-    Table::new(py, std::iter::once(t).chain(columns), info)
-}
-
-/// A matrix as an array; its columns stand one after the other, as they do here.
-fn array<'py>(py: Python<'py>, matrix: &DMatrix<f64>) -> PyResult<Bound<'py, PyAny>> {
-    let flat = PyArray1::from_slice(py, matrix.as_slice());
-    let shape = [matrix.nrows(), matrix.ncols()];
-    Ok(flat.reshape_with_order(shape, numpy::npyffi::NPY_ORDER::NPY_FORTRANORDER)?.into_any())
 }
