@@ -106,7 +106,8 @@ pub fn report(program: &Program, order: &Order) -> Result<String, String> {
     made(program, order, &|_| true).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
 }
 
-/// The same in one file with all that it needs, without sliders; `told` is asked after each step, with the part that is done, whether to go on.
+/// The same in one file with all that it needs, without sliders; `told` is asked after each step, with the part that is
+/// done, whether to go on.
 ///
 /// # Errors
 /// Why there is no such run: a sentence.

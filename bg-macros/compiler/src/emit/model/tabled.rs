@@ -1,7 +1,7 @@
 //! Long routines as tables, for numbers in which models calculate seldom.
 //!
-//! In: a routine. Out: what it gives as an expression: where numbers are interpreted (`bg_model::tabled`) the table is read,
-//! for all others there is straight code. rustc compiles one of the two for each kind of numbers.
+//! In: a routine. Out: what it gives as an expression: where numbers are interpreted (`bg_model::tabled`) the table is
+//! read, for all others there is straight code. rustc compiles one of the two for each kind of numbers.
 
 use std::collections::BTreeMap;
 

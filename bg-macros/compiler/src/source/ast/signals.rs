@@ -1,4 +1,5 @@
-//! What has a value by itself: parameters, inputs, values, states and memories of a graph's own, samples, tables; and their units.
+//! What has a value by itself: parameters, inputs, values, states and memories of a graph's own, samples, tables; and
+//! their units.
 
 use proc_macro2::Span;
 
