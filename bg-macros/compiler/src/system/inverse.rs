@@ -10,7 +10,8 @@
 
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 use crate::system::Value;
-use crate::system::link::{Freedom, Link, Moved, beside_speed, brought, gyroscopic, matrix_up, pull, square, up};
+use crate::system::link::{Freedom, Link, Moved, matrix_up, up};
+use crate::system::rigid::{self, Accelerated, Given, Mass, square};
 
 /// A tree of links in motion.
 #[derive(Clone, Debug)]
@@ -25,8 +26,9 @@ pub struct InverseDynamics {
     pub ground: Value,
     /// The rates of the speeds; zero of a link that has none of its own.
     pub rates: Vec<Id>,
-    /// Of a link whose body keeps its orientation its angular acceleration and that of its origin, in its axes.
-    pub own: Vec<Option<[Value; 2]>>,
+    /// The angular acceleration of a link and that of its origin, in its axes, where these are known beside the rates:
+    /// always those of a link whose body keeps its orientation.
+    pub accelerations: Vec<Option<[Value; 2]>>,
     /// The symbol of the first unknown of each link.
     pub unknowns: Vec<usize>,
     /// Rates of momenta: as they are, and by the unknowns.
@@ -88,9 +90,11 @@ impl InverseDynamics {
 
     /// The value of an unknown by states.
     pub fn value(&self, (link, unknown): (usize, usize)) -> Id {
-        match &self.own[link] {
-            None => self.rates[link],
-            Some([turning, there]) => [&self.spins[link], turning, there][unknown / 3].0[unknown % 3],
+        match &self.accelerations[link] {
+            Some([turning, there]) if !self.links[link].freedom.has_coordinate() => {
+                [&self.spins[link], turning, there][unknown / 3].0[unknown % 3]
+            }
+            _ => self.rates[link],
         }
     }
 
@@ -117,7 +121,7 @@ impl InverseDynamics {
         roots.extend(self.spins.iter_mut().flat_map(|spin| &mut spin.0));
         roots.extend(&mut self.ground.0);
         roots.extend(&mut self.rates);
-        roots.extend(self.own.iter_mut().flatten().flatten().flat_map(|part| &mut part.0));
+        roots.extend(self.accelerations.iter_mut().flatten().flatten().flat_map(|part| &mut part.0));
         roots.extend(self.written.iter_mut().flatten());
         roots
     }
@@ -125,8 +129,9 @@ impl InverseDynamics {
     /// The equations of the efforts, in the order of the unknowns that they give: of a link with a coordinate that along
     /// it, of a body that keeps its orientation those of the moment and, where nothing holds it, of the force.
     pub fn rows(&self, pool: &mut Pool) -> Vec<Row> {
-        let accelerations = self.accelerations(pool);
-        let composites = self.composites(pool, &accelerations);
+        let accelerated = self.accelerated(pool);
+        let composites = self.composites(pool, &accelerated);
+        let accelerations = accelerated.links;
         let acting = self.acting(pool);
         let mut rows: Vec<Row> = Vec::new();
         let mut first = Vec::new();
@@ -150,34 +155,20 @@ impl InverseDynamics {
         rows
     }
 
-    /// Angular acceleration and that of the origin of each link, from the rates of the speeds.
-    fn accelerations(&self, pool: &mut Pool) -> Vec<[Value; 2]> {
-        let squares: Vec<Value> = self.spins.iter().map(|spin| square(pool, spin)).collect();
-        let mut all: Vec<[Value; 2]> = Vec::new();
-        for (k, link) in self.links.iter().enumerate() {
-            if let Some(own) = &self.own[k] {
-                all.push(own.clone());
-                continue;
-            }
-            let moved = &self.moved[k];
-            let still = [Value::zero(pool, 3), self.ground.clone()];
-            let under = link.parent.map_or(still, |parent| all[parent].clone());
-            let pull = pull(pool, link, moved, (&squares, &self.spins));
-            let [turning, mut there] = brought(pool, link, moved, &under, &pull);
-            let beside = beside_speed(pool, link.freedom, moved, &self.spins[k]);
-            let mut turning = turning.add(pool, &beside);
-            let along = if link.freedom == Freedom::Turn { &mut turning } else { &mut there };
-            along.0[2] = pool.add(along.0[2], self.rates[k]);
-            all.push([turning, there]);
-        }
-        all
+    /// How the links are accelerated.
+    fn accelerated(&self, pool: &mut Pool) -> Accelerated {
+        let own = |k: usize| match self.accelerations[k].clone() {
+            Some([turning, there]) => Given::Accelerations(turning, Some(there)),
+            None => Given::Rate(self.rates[k]),
+        };
+        Accelerated::of(pool, &self.links, (&self.moved, &self.spins), &self.ground, own)
     }
 
     /// Each link with all that it carries.
-    fn composites(&self, pool: &mut Pool, accelerations: &[[Value; 2]]) -> Vec<Composite> {
+    fn composites(&self, pool: &mut Pool, accelerated: &Accelerated) -> Vec<Composite> {
         let mut all: Vec<Composite> = Vec::new();
         for (k, link) in self.links.iter().enumerate() {
-            all.push(Composite::of(pool, link, &self.spins[k], &accelerations[k]));
+            all.push(Composite::of(pool, link, accelerated.motion(k)));
         }
         for (k, link) in self.links.iter().enumerate().rev() {
             if let Some(parent) = link.parent {
@@ -384,19 +375,11 @@ struct Composite {
 
 impl Composite {
     /// Of a link that carries nothing.
-    fn of(pool: &mut Pool, link: &Link, spin: &Value, [turning, there]: &[Value; 2]) -> Self {
-        let (mass, first, about) = &link.counted;
-        let trace = pool.sum(&[about.0[0], about.0[4], about.0[8]]);
-        let half = pool.scale(0.5, trace);
-        let less = about.negate(pool);
-        let second = Value::diagonal(pool, &[half; 3]).add(pool, &less);
-        let square = square(pool, spin);
-        let (turned, pulled) = (gyroscopic(pool, about, &square), square.multiply(pool, first));
-        let (lever, swung) = (first.cross(pool, there), turning.cross(pool, first));
-        let moment = about.multiply(pool, turning).add(pool, &lever).add(pool, &turned);
-        let force = there.multiply(pool, &Value::scalar(*mass)).add(pool, &swung).add(pool, &pulled);
+    fn of(pool: &mut Pool, link: &Link, motion: rigid::Motion<'_>) -> Self {
         let (drift, swirl) = (Value::zero(pool, 3), Value::zero(pool, 9));
-        Self { mass: *mass, first: first.clone(), second, drift, swirl, wrench: [moment, force] }
+        let wrench = link.counted.wrench(pool, motion);
+        let Mass { mass, first, second } = link.counted.clone();
+        Self { mass, first, second, drift, swirl, wrench }
     }
 
     fn add(&self, pool: &mut Pool, other: &Self) -> Self {

@@ -5,6 +5,7 @@
 
 use crate::expr::{Id, Pool};
 use crate::system::Value;
+use crate::system::rigid::Mass;
 
 /// What a step lets go, with its coordinate about or along the third axis.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -52,8 +53,8 @@ pub struct Link {
     pub fixed: Value,
     /// Its origin, from its parent's, in the parent's axes, where it has not slid.
     pub offset: Value,
-    /// What the recursion counts to it: mass, first moment, tensor about the origin.
-    pub counted: (Id, Value, Value),
+    /// What the recursion counts to it, about its origin.
+    pub counted: Mass,
 }
 
 /// What moves a link.
@@ -113,59 +114,6 @@ impl Moved {
     }
 }
 
-/// w x (w x ) as a matrix, w w^T - w^2.
-pub fn square(pool: &mut Pool, spin: &Value) -> Value {
-    let w = &spin.0;
-    let squares: Vec<Id> = w.iter().map(|&part| pool.powi(part, 2)).collect();
-    Value(
-        (0..9)
-            .map(|k| {
-                let (row, column) = (k / 3, k % 3);
-                if row == column {
-                    let others = [squares[(row + 1) % 3], squares[(row + 2) % 3]];
-                    let sum = pool.sum(&others);
-                    pool.neg(sum)
-                } else {
-                    pool.mul(w[row], w[column])
-                }
-            })
-            .collect(),
-    )
-}
-
-/// w x I w by the products of w's components: y I_z - z I_y of the vectors I w w^T.
-pub fn gyroscopic(pool: &mut Pool, about: &Value, square: &Value) -> Value {
-    let at = |row: usize, column: usize| about.0[3 * (row % 3) + column % 3];
-    let product = |row: usize, column: usize| square.0[3 * (row % 3) + column % 3];
-    Value(
-        (0..3)
-            .map(|i| {
-                let (j, k) = (i + 1, i + 2);
-                let apart = pool.sub(at(k, k), at(j, j));
-                // The diagonal of w w^T - w^2 differs as the squares do.
-                let squares = pool.sub(product(j, j), product(k, k));
-                let parts = [(apart, product(j, k)), (at(j, k), squares), (at(i, k), product(i, j))];
-                let mut terms: Vec<(Id, f64)> = parts.iter().map(|&(a, b)| (pool.mul(a, b), 1.0)).collect();
-                terms.push((pool.mul(at(i, j), product(i, k)), -1.0));
-                pool.linear(0.0, &terms)
-            })
-            .collect(),
-    )
-}
-
-/// What a tensor about a point gains seen from elsewhere: the point is at `by`, where the first moment about it is
-/// `first`.
-pub fn steiner(pool: &mut Pool, mass: Id, first: &Value, by: &Value) -> Value {
-    let moment = by.multiply(pool, &Value::scalar(mass));
-    let twice = first.scale(pool, 2.0);
-    let size = moment.add(pool, &twice).dot(pool, by);
-    let size = Value::diagonal(pool, &[size; 3]);
-    let half = moment.add(pool, first);
-    let (one, other) = (half.outer(pool, by), by.outer(pool, first));
-    let sum = one.add(pool, &other).negate(pool);
-    size.add(pool, &sum).symmetric()
-}
-
 /// R of a matrix R A R^T turned about the third axis, where A's parts that are equal are one.
 fn about_third(pool: &mut Pool, own: &Moved, of: &Value) -> Value {
     if pool.is_zero(own.moves.sine) {
@@ -222,35 +170,4 @@ pub fn down(pool: &mut Pool, link: &Link, own: &Moved, of: &Value) -> Value {
     let minus = pool.neg(own.moves.sine);
     let [x, y] = rotated(pool, [own.moves.cosine, minus], [inside.0[0], inside.0[1]]);
     Value(vec![x, y, inside.0[2]])
-}
-
-/// How a link's origin is accelerated by the turning of its parent and its own sliding.
-pub fn pull(pool: &mut Pool, link: &Link, own: &Moved, (squares, spins): (&[Value], &[Value])) -> Value {
-    let Some(parent) = link.parent else { return Value::zero(pool, 3) };
-    let pull = squares[parent].multiply(pool, &own.offset);
-    if link.freedom != Freedom::Slide {
-        return pull;
-    }
-    let zero = pool.zero();
-    let twice = pool.scale(2.0, own.moves.speed);
-    let sliding = link.fixed.multiply(pool, &Value(vec![zero, zero, twice]));
-    let beside = spins[parent].cross(pool, &sliding);
-    pull.add(pool, &beside)
-}
-
-/// The accelerations that a link has of its parent's, `under`, before what its own speed does; `pull` is that of [`pull`].
-pub fn brought(pool: &mut Pool, link: &Link, own: &Moved, under: &[Value; 2], pull: &Value) -> [Value; 2] {
-    let [turning, there] = under;
-    let beside = turning.cross(pool, &own.offset);
-    let there = there.add(pool, &beside).add(pool, pull);
-    [turning, &there].map(|part| down(pool, link, own, part))
-}
-
-/// The angular acceleration w x z times the speed of a turn.
-pub fn beside_speed(pool: &mut Pool, freedom: Freedom, own: &Moved, spin: &Value) -> Value {
-    if freedom != Freedom::Turn {
-        return Value::zero(pool, 3);
-    }
-    let (x, y) = (pool.mul(spin.0[1], own.moves.speed), pool.mul(spin.0[0], own.moves.speed));
-    Value(vec![x, pool.neg(y), pool.zero()])
 }

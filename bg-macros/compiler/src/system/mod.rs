@@ -10,6 +10,7 @@ pub mod link;
 pub mod projection;
 pub mod reduce;
 pub mod requirements;
+pub mod rigid;
 pub mod second_order;
 pub mod sizes;
 mod stopped;

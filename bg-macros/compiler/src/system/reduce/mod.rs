@@ -217,7 +217,7 @@ fn in_joint_coordinates(
     counter: &mut Counter<'_, '_>,
 ) -> Option<Jointed> {
     let (mut equations, mut report) = of?;
-    tree::put(&mut equations, &mut report, which)?;
+    tree::put(&mut equations, &mut report, which, counter.operations)?;
     counter.note("joints by their coordinates", &mut equations, &mut report);
     let all = tree::speeds(&equations);
     run(&STATES, &mut equations, wanted, &mut report, counter);

@@ -3,7 +3,7 @@
 //!
 //! In: bodies, joints. Out: [`Link`]s, parents first, and the [`Seat`] of each body on one. All of this is constant. The
 //! origin of a link that turns is on its hinge, where the offset from the parent has a component less. What turns about
-//! a hinge as it does about any line through it, mass on the hinge and equal moments across it, is counted to the
+//! a hinge as it does about any line through it, mass as it is along the hinge, is counted to the
 //! parent: nothing changes by it, and the recursion has zeros there (Khalil and Dombre, Modeling, Identification and
 //! Control of Robots, 2002, section 9.4).
 
@@ -14,7 +14,8 @@ use super::joints::Joint;
 use super::numbers::{self, Matrix};
 use crate::expr::Pool;
 use crate::system::Value;
-use crate::system::link::{Freedom, Link, steiner};
+use crate::system::link::{Freedom, Link};
+use crate::system::rigid::Mass;
 
 /// Where a body is on its link, or on the ground.
 #[derive(Clone, Debug)]
@@ -65,7 +66,7 @@ pub(super) fn of(pool: &mut Pool, bodies: &[Body], joints: &[Joint]) -> (Vec<Lin
                 parent: link,
                 fixed: numbers::matrix(pool, &frame),
                 offset,
-                counted: (pool.zero(), Value::zero(pool, 3), Value::zero(pool, 9)),
+                counted: Mass::none(pool),
             });
             (link, frame, from) = (Some(links.len() - 1), numbers::UNIT, left);
         }
@@ -117,36 +118,27 @@ fn seat(pool: &mut Pool, body: &Body, index: usize, link: Option<usize>, (axes, 
 
 /// Counts a body to its link.
 fn count(pool: &mut Pool, link: &mut Link, body: &Body, seat: &Seat) {
-    let (mass, first, about) = link.counted.clone();
-    let moment = seat.centre.multiply(pool, &Value::scalar(body.mass));
-    let none = Value::zero(pool, 3);
-    let shifted = steiner(pool, body.mass, &none, &seat.centre);
-    let own = seat.central.add(pool, &shifted);
-    link.counted = (pool.add(mass, body.mass), first.add(pool, &moment), about.add(pool, &own));
+    let own = Mass::central(pool, body.mass, &seat.central).seen(pool, &seat.centre);
+    link.counted = link.counted.add(pool, &own);
 }
 
-/// Counts to the parent what a hinge does not move.
+/// Counts to the parent what a hinge does not move: the mass as it is along the hinge.
 fn lighten(pool: &mut Pool, links: &mut [Link], index: usize) {
     let zero = pool.zero();
-    let link = links[index].clone();
+    let link = &mut links[index];
     if link.freedom != Freedom::Turn {
         return;
     }
-    let (mass, first, about) = link.counted;
-    let moment = about.0[4];
-    let (mut left, mut rest) = (first.clone(), about.clone());
-    left.0[2] = zero;
-    rest.0[0] = pool.sub(about.0[0], moment);
-    rest.0[4] = zero;
-    links[index].counted = (zero, left, rest);
+    let Mass { first, second, .. } = &link.counted;
+    let left = if link.counted.is_by_tensor(pool) { pool.neg(second.0[0]) } else { zero };
+    let along = [first.0[2], pool.sub(second.0[8], left)].map(|part| Value(vec![zero, zero, part]));
+    (link.counted.first.0[2], link.counted.second.0[8]) = (zero, left);
+    let mass = std::mem::replace(&mut link.counted.mass, zero);
+    let link = links[index].clone();
     let Some(parent) = link.parent else { return };
-    let along = link.fixed.multiply(pool, &Value(vec![zero, zero, first.0[2]]));
-    let equal = Value::diagonal(pool, &[moment, moment, zero]);
-    let turned = link.fixed.multiply(pool, &equal).multiply(pool, &link.fixed.transpose());
-    let shifted = steiner(pool, mass, &along, &link.offset);
-    let mass_there = link.offset.multiply(pool, &Value::scalar(mass));
-    let (own_mass, own_first, own_about) = links[parent].counted.clone();
-    let about = own_about.add(pool, &turned.symmetric()).add(pool, &shifted);
-    let first = own_first.add(pool, &along).add(pool, &mass_there);
-    links[parent].counted = (pool.add(own_mass, mass), first, about);
+    let [first, spread] = along.map(|along| link.fixed.multiply(pool, &along));
+    let axis = Value(vec![link.fixed.0[2], link.fixed.0[5], link.fixed.0[8]]);
+    let second = spread.outer(pool, &axis).symmetric();
+    let moved = Mass { mass, first, second }.seen(pool, &link.offset);
+    links[parent].counted = links[parent].counted.add(pool, &moved);
 }

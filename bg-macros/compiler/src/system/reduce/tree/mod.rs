@@ -25,7 +25,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::report::{Fate, Report, show};
 use super::speeds::of_kind;
-use super::{closing, friction, is_constant, turned};
+use super::{Operations, closing, friction, is_constant, turned};
 use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, partial, substitute};
 use crate::system::Value;
 use crate::system::equations::{Kind, Origin, State, StateEquations};
@@ -37,7 +37,7 @@ use joints::Joint;
 use loads::{Loads, Tree};
 use motion::Motion;
 use reactions::Wanted;
-use recursion::Accelerations;
+use recursion::{Accelerations, Ground};
 use relative::Coordinated;
 
 /// Whether there is anything to look at: rows of rigid joints.
@@ -65,7 +65,12 @@ pub(super) enum Which {
 }
 
 /// Takes the bodies of trees of joints out of the equations; none where there are none, or something does not fit.
-pub(super) fn put(equations: &mut StateEquations, report: &mut Report, which: Which) -> Option<()> {
+pub(super) fn put(
+    equations: &mut StateEquations,
+    report: &mut Report,
+    which: Which,
+    operations: &mut Operations<'_>,
+) -> Option<()> {
     equations.rewrite(&|pool, ids| numbers::folded(pool, ids));
     let bodies = bodies::of(equations);
     let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
@@ -90,7 +95,8 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report, which: Wh
     let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
     let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
     let sticking = sticking::lock(equations, &mut moved, &images);
-    let found = recursion::accelerations(&mut equations.pool, &links, &moved, &motion.spins, &ground);
+    let when = when(equations, &links, (&moved, &motion.spins), &ground, operations);
+    let found = recursion::accelerations(&mut equations.pool, &links, (&moved, &motion.spins), (&ground, when));
     let found = linear(equations, &links, found);
     let mut starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
     for (_, of_one) in joints.iter().zip(&mut starts).filter(|(joint, _)| joint.is_sought) {
@@ -138,6 +144,34 @@ pub(super) fn put(equations: &mut StateEquations, report: &mut Report, which: Wh
     Some(())
 }
 
+/// So many links are few enough to find by operations when weights are counted.
+const FEW: usize = 24;
+
+/// When the ground's acceleration is counted, so that the rates of the speeds take fewer operations.
+fn when(
+    equations: &StateEquations,
+    links: &[Link],
+    motion: (&[Moved], &[Value]),
+    ground: &Value,
+    operations: &mut Operations<'_>,
+) -> Ground {
+    let falls = ground.0.iter().any(|&part| !equations.pool.is_zero(part));
+    let is_open = links.iter().any(|link| link.parent.is_none() && link.freedom != Freedom::Free);
+    if !falls || !is_open || links.len() > FEW {
+        return Ground::First;
+    }
+    let mut cost = |when: Ground| {
+        let mut alone = equations.clone();
+        let zero = alone.pool.zero();
+        let found = recursion::accelerations(&mut alone.pool, links, motion, (ground, when));
+        let found = linear(&mut alone, links, found);
+        let rates = found.rates.into_iter().chain(std::iter::repeat(zero));
+        alone.states.iter_mut().zip(rates).for_each(|(state, rate)| state.rate = rate);
+        operations(&mut alone)
+    };
+    if cost(Ground::Last) < cost(Ground::First) { Ground::Last } else { Ground::First }
+}
+
 /// What the accelerations of the links take, where that is known here; from this number on symbols are free.
 fn inverse(
     equations: &mut StateEquations,
@@ -148,24 +182,26 @@ fn inverse(
     if !InverseDynamics::covers(tree.links) {
         return None;
     }
+    // With reactions the rates are sums over these, and so are accelerations by the rates.
+    let are_alone = equations.reactions.is_empty();
     let mut inverse = InverseDynamics {
         links: tree.links.to_vec(),
         moved: moved.to_vec(),
         spins: motion.spins.clone(),
         ground: ground.clone(),
         rates: found.rates.clone(),
-        own: tree
+        accelerations: tree
             .links
             .iter()
             .zip(&found.links)
-            .map(|(link, own)| (!link.freedom.has_coordinate()).then(|| own.clone()))
+            .map(|(link, own)| (are_alone || !link.freedom.has_coordinate()).then(|| own.clone()))
             .collect(),
         unknowns: InverseDynamics::numbered(tree.links, next),
         written: Vec::new(),
     };
     let (mut spins, mut by_unknowns) =
         (motion.spins.clone(), Accelerations { rates: Vec::new(), links: found.links.clone(), needed: Vec::new() });
-    for (link, _) in inverse.own.iter().enumerate().filter(|(_, own)| own.is_some()) {
+    for link in (0..tree.links.len()).filter(|&link| !tree.links[link].freedom.has_coordinate()) {
         let mut vector = |first: usize| {
             Value((first..first + 3).map(|k| equations.pool.symbol(inverse.symbol((link, k)))).collect())
         };

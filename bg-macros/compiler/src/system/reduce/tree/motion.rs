@@ -10,11 +10,12 @@ use super::joints::{Joint, Kind};
 use super::links::Seat;
 use super::loads::Tree;
 use super::numbers;
-use super::recursion::{Accelerations, rate_of_angular, spins};
+use super::recursion::Accelerations;
 use crate::expr::{Function, Id, Pool, Symbol, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
 use crate::system::link::{Freedom, Link, Moved, Moves, down};
+use crate::system::rigid::{rate_of_angular, spins};
 
 /// The coordinates of the steps of all joints, from this symbol on: two for each step.
 pub(super) fn coordinates(pool: &mut Pool, first: usize, joints: &[Joint]) -> Vec<Vec<Moves>> {

@@ -14,12 +14,13 @@ use super::loads::Tree;
 use super::motion::Motion;
 use super::numbers;
 use super::recognition::at_places;
-use super::recursion::{Accelerations, rate_of_angular};
+use super::recursion::Accelerations;
 use crate::expr::{Id, Pool, Symbol, partial, same_polynomial, substitute};
 use crate::system::Value;
 use crate::system::equations::StateEquations;
-use crate::system::link::{Freedom, Moved, Moves, square, up};
+use crate::system::link::{Freedom, Moved, Moves, up};
 use crate::system::reduce::is_constant;
+use crate::system::rigid::{rate_of_angular, square};
 
 /// A row whose reaction is read.
 #[derive(Clone, Debug)]

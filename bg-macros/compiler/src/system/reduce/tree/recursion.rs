@@ -3,14 +3,15 @@
 //! In: links with their moves, loads on each. Out: the rate of each speed. Method: articulated bodies
 //! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7), in the axes of each link. Accelerations are those
 //! of the links' origins, so that no velocity of a point is needed; what turning does is linear in the six products of
-//! an angular velocity's components. Gravity is an acceleration of the ground.
+//! an angular velocity's components. Gravity is an acceleration of the ground. What links do while all speeds stay as
+//! they are is found first, from ground to tip; the wrenches that this takes are all that velocities do, so that the way
+//! from tip to ground and back is one of links at rest. Which of the two ways has gravity is chosen by operations.
 
 use crate::expr::{Id, Pool};
 use crate::system::Value;
 use crate::system::equations::definite::Factors;
-use crate::system::link::{
-    Freedom, Link, Locked, Moved, beside_speed, brought, down, gyroscopic, matrix_up, pull, square, up,
-};
+use crate::system::link::{Freedom, Link, Locked, Moved, down, matrix_up, up};
+use crate::system::rigid::{Accelerated, Given, Motion, brought};
 
 /// A moment is J a + H b + n, a force H^T a + M b + f, by the angular acceleration a and the acceleration b.
 #[derive(Clone, Debug)]
@@ -29,8 +30,6 @@ enum Known {
         /// By how much the speed's rate falls with the parent's accelerations.
         by: [Value; 2],
         rate: Id,
-        /// Its angular acceleration beside its parent's and what its speed's rate gives.
-        turning: Value,
     },
     /// The angular acceleration is this vector less this matrix by the acceleration of the origin.
     Ball(Value, Value),
@@ -48,43 +47,40 @@ pub(super) struct Accelerations {
     pub needed: Vec<Option<Id>>,
 }
 
-/// The angular velocity of each link, in its axes.
-pub(super) fn spins(pool: &mut Pool, links: &[Link], moved: &[Moved]) -> Vec<Value> {
-    let mut spins: Vec<Value> = Vec::new();
-    for (link, own) in links.iter().zip(moved) {
-        let mut spin = match (&own.own, link.parent) {
-            (Some(own), _) => own.spin.clone(),
-            (None, Some(parent)) => down(pool, link, own, &spins[parent]),
-            (None, None) => Value::zero(pool, 3),
-        };
-        if link.freedom == Freedom::Turn {
-            spin.0[2] = pool.add(spin.0[2], own.moves.speed);
-        }
-        spins.push(spin);
-    }
-    spins
+/// When the acceleration of the ground is counted that stands for weights.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub(super) enum Ground {
+    /// From ground to tip, with what links do while speeds stay as they are: fewer operations in arms.
+    First,
+    /// On the way back: fewer where few links carry each other.
+    Last,
 }
 
 /// How links are accelerated that have these angular velocities, where the ground has this acceleration.
 pub(super) fn accelerations(
     pool: &mut Pool,
     links: &[Link],
-    moved: &[Moved],
-    spins: &[Value],
-    ground: &Value,
+    (moved, spins): (&[Moved], &[Value]),
+    (ground, when): (&Value, Ground),
 ) -> Accelerations {
-    let squares: Vec<Value> = spins.iter().map(|spin| square(pool, spin)).collect();
+    let zero = pool.zero();
+    let still = Value(vec![zero; 3]);
+    let [first, last] = if when == Ground::First { [ground, &still] } else { [&still, ground] };
+    let own = |k: usize| match links[k].freedom {
+        Freedom::Turn | Freedom::Slide => Given::Rate(zero),
+        Freedom::Ball => Given::Accelerations(still.clone(), None),
+        Freedom::Free => Given::Accelerations(still.clone(), Some(still.clone())),
+    };
+    let steady = Accelerated::of(pool, links, (moved, spins), first, own);
     let mut bodies: Vec<Articulated> = Vec::new();
     for (k, link) in links.iter().enumerate() {
-        bodies.push(rigid(pool, link, &moved[k], &squares[k]));
+        bodies.push(rigid(pool, link, &moved[k], steady.motion(k)));
     }
-    let pulls: Vec<Value> =
-        links.iter().zip(moved).map(|(link, own)| pull(pool, link, own, (&squares, spins))).collect();
     let mut all: Vec<Option<Known>> = vec![None; links.len()];
     for k in (0..links.len()).rev() {
         let (link, own) = (&links[k], &moved[k]);
         let (known, left) = match link.freedom {
-            Freedom::Turn | Freedom::Slide => release(pool, link.freedom, &bodies[k], own, &spins[k]),
+            Freedom::Turn | Freedom::Slide => release(pool, link.freedom, &bodies[k], own),
             Freedom::Ball => release_ball(pool, &bodies[k]),
             Freedom::Free => {
                 all[k] = Some(Known::Free(bodies[k].alone(pool)));
@@ -93,21 +89,23 @@ pub(super) fn accelerations(
         };
         all[k] = Some(known);
         if let Some(parent) = link.parent {
-            let carried = carried(pool, link, own, left, &pulls[k]);
+            let carried = carried(pool, link, own, left);
             let both = bodies[parent].clone();
             bodies[parent] = both.add(pool, &carried);
         }
     }
-    let mut accelerations: Vec<[Value; 2]> = Vec::new();
+    // Beside what is there while all speeds stay as they are.
+    let mut beside: Vec<[Value; 2]> = Vec::new();
     let (mut rates, mut needed) = (Vec::new(), Vec::new());
     for (k, link) in links.iter().enumerate() {
-        let still = [Value::zero(pool, 3), ground.clone()];
-        let under = link.parent.map_or(still, |parent| accelerations[parent].clone());
+        let [turning, mut there] = match link.parent {
+            Some(parent) => brought(pool, link, &moved[k], &beside[parent]),
+            None => [still.clone(), down(pool, link, &moved[k], last)],
+        };
         needed.push(None);
-        let [turning, mut there] = brought(pool, link, &moved[k], &under, &pulls[k]);
         let (rate, turning) = match all[k].clone().expect("every link is gone through") {
-            Known::Step { by, rate, turning: own } => {
-                let mut turning = turning.add(pool, &own);
+            Known::Step { by, rate } => {
+                let mut turning = turning;
                 let locked = moved[k].locked;
                 needed[k] = locked.map(|locked| bodies[k].effort(pool, link.freedom, [&turning, &there], locked.rate));
                 let parts = [by[0].dot(pool, &turning), by[1].dot(pool, &there)];
@@ -126,16 +124,11 @@ pub(super) fn accelerations(
             }
         };
         rates.push(rate);
-        accelerations.push([turning, there]);
+        beside.push([turning, there]);
     }
-    Accelerations { rates, links: accelerations, needed }
-}
-
-/// The rate of a body's angular momentum about its centre of mass, in its axes.
-pub(super) fn rate_of_angular(pool: &mut Pool, central: &Value, spin: &Value, turning: &Value) -> Value {
-    let square = square(pool, spin);
-    let beside = gyroscopic(pool, central, &square);
-    central.multiply(pool, turning).add(pool, &beside)
+    let both = |(steady, beside): (&[Value; 2], &[Value; 2])| [0, 1].map(|k| steady[k].add(pool, &beside[k]));
+    let links = steady.links.iter().zip(&beside).map(both).collect();
+    Accelerations { rates, links, needed }
 }
 
 impl Articulated {
@@ -178,16 +171,15 @@ impl Articulated {
     }
 }
 
-/// A link that carries nothing.
-fn rigid(pool: &mut Pool, link: &Link, own: &Moved, square: &Value) -> Articulated {
-    let (mass, first, about) = &link.counted;
-    let across = first.skew(pool);
-    let heavy = Value::diagonal(pool, &[*mass; 3]);
-    let turned = gyroscopic(pool, about, square);
-    let pulled = square.multiply(pool, first);
+/// A link that carries nothing and moves so.
+fn rigid(pool: &mut Pool, link: &Link, own: &Moved, motion: Motion<'_>) -> Articulated {
+    let about = link.counted.tensor(pool);
+    let across = link.counted.first.skew(pool);
+    let heavy = Value::diagonal(pool, &[link.counted.mass; 3]);
+    let [moment, force] = link.counted.wrench(pool, motion);
     let loads = own.load.clone().map(|load| load.negate(pool));
-    let bias = [turned.add(pool, &loads[0]), pulled.add(pool, &loads[1])];
-    Articulated { inertia: [about.clone(), across, heavy], bias }
+    let bias = [moment.add(pool, &loads[0]), force.add(pool, &loads[1])];
+    Articulated { inertia: [about, across, heavy], bias }
 }
 
 /// Whether a freedom's effort is a moment or a force.
@@ -196,7 +188,7 @@ fn block_of(freedom: Freedom) -> usize {
 }
 
 /// A link seen through a turn or a slide.
-fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, spin: &Value) -> (Known, Articulated) {
+fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved) -> (Known, Articulated) {
     let [turning, coupling, pushing] = &body.inertia;
     let zero = pool.zero();
     let known = block_of(freedom);
@@ -237,20 +229,14 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved, s
         [2, 5, 6, 7, 8].into_iter().for_each(|k| left[own_block].0[k] = zero);
         of_coupling.into_iter().for_each(|k| left[1].0[k] = zero);
     }
-    let own_turning = beside_speed(pool, freedom, own, spin);
     let mut bias = [column, row].map(|of| of.multiply(pool, &Value::scalar(rate)));
-    for (k, bias) in bias.iter_mut().enumerate() {
-        let turned = if k == 0 {
-            left[0].multiply(pool, &own_turning)
-        } else {
-            left[1].transpose().multiply(pool, &own_turning)
-        };
-        *bias = bias.add(pool, &body.bias[k]).add(pool, &turned);
+    for (bias, own) in bias.iter_mut().zip(&body.bias) {
+        *bias = bias.add(pool, own);
     }
     if own.locked.is_none() {
         bias[known].0[2] = own.effort;
     }
-    (Known::Step { by, rate, turning: own_turning }, Articulated { inertia: left, bias })
+    (Known::Step { by, rate }, Articulated { inertia: left, bias })
 }
 
 /// A link seen through a ball: no moment is left.
@@ -268,7 +254,7 @@ fn release_ball(pool: &mut Pool, body: &Articulated) -> (Known, Articulated) {
 }
 
 /// A link without its hinge, in the axes of its parent and about the parent's origin.
-fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Value) -> Articulated {
+fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated) -> Articulated {
     let [turning, coupling, pushing] = of.inertia;
     let (turning, coupling, pushing) = (
         matrix_up(pool, link, own, &turning),
@@ -276,8 +262,6 @@ fn carried(pool: &mut Pool, link: &Link, own: &Moved, of: Articulated, pull: &Va
         matrix_up(pool, link, own, &pushing),
     );
     let [moment, force] = of.bias.map(|bias| up(pool, link, own, &bias));
-    let (first, second) = (coupling.multiply(pool, pull), pushing.multiply(pool, pull));
-    let (moment, force) = (moment.add(pool, &first), force.add(pool, &second));
     let arm = own.offset.cross(pool, &force);
     let moment = moment.add(pool, &arm);
     let skew = own.offset.skew(pool);
