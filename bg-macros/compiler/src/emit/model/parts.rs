@@ -32,7 +32,7 @@ impl Emission<'_> {
         ];
         let long = tables.iter().flat_map(|(constants, routines)| {
             let constants = format_ident!("{constants}");
-            let long = routines.iter().filter(|routine| routine.is_long());
+            let long = routines.iter().filter(|routine| routine.is_long() && !self.is_table_alone(routine));
             long.map(move |routine| self.functions(routine, &constants))
         });
         let functions: TokenStream = long.collect();
@@ -96,4 +96,44 @@ fn blocks(routine: &Routine) -> (Vec<Group<'_>>, Blocks) {
 pub(super) fn alone(routine: &Routine, assignments: &[Assignment], results: &[Operand]) -> Routine {
     let Routine { name, counts, .. } = routine;
     Routine { name: name.clone(), assignments: assignments.to_vec(), results: results.to_vec(), counts: *counts }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fmt::Write;
+
+    use crate::source::syntax;
+    use crate::{emit, pipeline};
+
+    /// Six bodies on hinges with stops, whose impacts and reactions are tables alone.
+    fn arm() -> String {
+        let mut text = "graph G { gravity [0, 0, -9.81]; ground { point O = [0, 0, 0]; } ".to_owned();
+        for k in 0..6 {
+            let (upper, axis) = (format!("b{}.low", k - 1), ["y", "z", "x"][k as usize % 3]);
+            let upper = if k == 0 { "ground.O" } else { &upper };
+            let _ = write!(
+                text,
+                "body b{k} {{ mass 1; inertia [[0.1, 0.01, 0.02], [0.01, 0.2, -0.03], [0.02, -0.03, 0.15]];
+                    point top = [0.1, 0.2, 0.5]; point low = [0.2, 0.2, 0.5] - [0, 0.3, 0.9];
+                    start top at {k} * [0.1, -0.3, -0.9]; }}
+                 joint j{k}: revolute {axis} ({upper} -> b{k}.top) {{ rigid; }}
+                 stop s{k} on j{k} {{ at most 0.2; restitution 0.5; }} "
+            );
+        }
+        text + "observe { a: rad = j5.angle; } scenes only; scene S {} }"
+    }
+
+    #[test]
+    fn every_part_of_a_long_routine_is_called() {
+        let source = syntax::parse(arm().parse().expect("tokens")).expect("a graph");
+        let code = emit::model(&pipeline::models(&source).expect("a model")[0]).to_string();
+        let names = |before: &str| -> BTreeSet<&str> {
+            let all = code.split(before).skip(1).filter_map(|rest| rest.split([' ', '(']).next());
+            all.filter(|name| name.contains("_part_")).collect()
+        };
+        let (declared, called) = (names("fn "), names("self . "));
+        assert!(declared.iter().any(|name| name.starts_with("rate_part_")), "it is long: {declared:?}");
+        assert_eq!(declared, called);
+    }
 }

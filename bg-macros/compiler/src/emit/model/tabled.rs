@@ -123,6 +123,11 @@ impl Emission<'_> {
         (!functions.is_empty()).then(|| quote!(impl<S: Scalar> Model<S> { #functions }))
     }
 
+    /// Whether this is a routine of which there is a table alone.
+    pub(super) fn is_table_alone(&self, routine: &Routine) -> bool {
+        self.asked().into_iter().any(|asked| std::ptr::eq(asked.routine, routine) && asked.is_table_alone())
+    }
+
     /// All routines that have a value by [`Self::values`].
     fn asked(&self) -> Vec<Asked<'_>> {
         let Programs { running, holding, impacts, sizes, .. } = &self.model.programs;

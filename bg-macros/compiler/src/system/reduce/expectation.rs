@@ -260,15 +260,15 @@ mod tests {
         assert!(faults[0].span.start().column < faults[1].span.start().column);
     }
 
-    /// Two bodies on hinges about these axes, one below the other in y or z, which gravity pulls aside.
-    fn hinges(axes: [&str; 2], gravity: &str, rigid: &str) -> Vec<Variant> {
+    /// Two bodies of this tensor on hinges about these axes, one below the other in y or z, which gravity pulls aside.
+    fn hinges(axes: [&str; 2], gravity: &str, (rigid, inertia): (&str, &str)) -> Vec<Variant> {
         let at = |height: f64| if axes[0] == "z" { format!("[0, {height}, 0]") } else { format!("[0, 0, {height}]") };
         let (top, low, second) = (at(0.5), at(-0.5), at(-1.0));
         let text = format!(
             "graph G {{
                 gravity {gravity}; ground {{ point O = [0, 0, 0]; }}
-                body a {{ mass 1; inertia [0.1, 0.2, 0.3]; point top = {top}; point low = {low}; start top at [0, 0, 0]; }}
-                body b {{ mass 1; inertia [0.1, 0.2, 0.3]; point top = {top}; start top at {second}; }}
+                body a {{ mass 1; inertia {inertia}; point top = {top}; point low = {low}; start top at [0, 0, 0]; }}
+                body b {{ mass 1; inertia {inertia}; point top = {top}; start top at {second}; }}
                 joint i: revolute {} (ground.O -> a.top) {{ {rigid} }}
                 joint j: revolute {} (a.low -> b.top) {{ {rigid} }}
                 observe {{ b.position; }}
@@ -282,18 +282,22 @@ mod tests {
 
     #[test]
     fn a_plane_may_be_any_of_three() {
-        let fault = |axes, gravity, rigid| {
-            let variant = hinges(axes, gravity, rigid).remove(1);
+        let fault = |axes, gravity, rigid, inertia| {
+            let variant = hinges(axes, gravity, (rigid, inertia)).remove(1);
             let equations = pipeline::derive(&variant.graph).expect("equations").equations;
             let wanted = wanted(scene(&variant), &equations).expect("parameters");
             let report = reduce::for_scene(equations, &wanted, false, &mut crate::program::rate_operations).1;
             check(scene(&variant), &report).err().map(|faults| faults[0].message.clone())
         };
+        let (axes, uneven) = ("[0.1, 0.2, 0.3]", "[[0.1, 0.01, 0.02], [0.01, 0.2, -0.03], [0.02, -0.03, 0.25]]");
         for rigid in ["rigid;", "stiffness 1e5; tilt stiffness 1e3;"] {
             for (axis, gravity) in [("x", "[0, 2, -9]"), ("y", "[3, 0, -9]"), ("z", "[3, 2, 0]")] {
-                assert_eq!(fault([axis, axis], gravity, rigid), None, "{axis} {rigid}");
+                assert_eq!(fault([axis, axis], gravity, rigid, axes), None, "{axis} {rigid}");
+                // Rigid hinges hold what products of inertia ask for; others give way.
+                let is_planar = fault([axis, axis], gravity, rigid, uneven).is_none();
+                assert_eq!(is_planar, rigid == "rigid;", "{axis} {rigid}");
             }
-            let message = fault(["y", "x"], "[3, 2, -9]", rigid).expect("it moves in space");
+            let message = fault(["y", "x"], "[3, 2, -9]", rigid, axes).expect("it moves in space");
             assert!(message.contains("is not planar: these are not proved constant: "), "{message}");
         }
     }

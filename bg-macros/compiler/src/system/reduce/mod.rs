@@ -65,8 +65,17 @@ struct Counter<'a, 'o> {
 impl Counter<'_, '_> {
     /// Enters the size of the equations after a reduction into the report.
     fn note(&mut self, stage: &'static str, equations: &mut StateEquations, report: &mut Report) {
-        let operations = self.is_told.then(|| (self.operations)(equations));
+        let operations = self.is_told.then(|| self.count(equations, report));
         report.count(stage, equations.states.len(), operations);
+    }
+
+    /// The operations of a rate: those of the last count, where the rates are as they were then.
+    fn count(&mut self, equations: &mut StateEquations, report: &mut Report) -> usize {
+        let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
+        let rates = equations.solution.closed(&mut equations.pool, &rates);
+        let known = report.counts.last().and_then(|count| count.operations).filter(|_| report.counted == rates);
+        report.counted = rates;
+        known.unwrap_or_else(|| (self.operations)(equations))
     }
 
     /// The operations of a rate of reduced equations, a sine or cosine as many as it takes.

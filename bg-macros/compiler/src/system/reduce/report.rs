@@ -110,6 +110,8 @@ pub struct Report {
     pub fates: Vec<(State, Fate)>,
     /// The model's size after each reduction.
     pub counts: Vec<Count>,
+    /// The rates of which the last count is, in the equations' pool.
+    pub(super) counted: Vec<Id>,
     /// Why all joints have kept their reactions, where they have.
     pub kept: Option<Kept>,
     /// The orientations that loops give.
@@ -123,7 +125,7 @@ impl Report {
         let fates: Vec<(State, Fate)> =
             equations.states.iter().map(|state| (state.clone(), Fate::Integrated)).collect();
         let left = (0..fates.len()).collect();
-        Self { fates, counts: Vec::new(), kept: None, closed: BTreeSet::new(), left }
+        Self { fates, counts: Vec::new(), counted: Vec::new(), kept: None, closed: BTreeSet::new(), left }
     }
 
     /// Notes the size of the model.
