@@ -11,7 +11,7 @@
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 use crate::system::Value;
 use crate::system::link::{Freedom, Link, Moved, matrix_up, up};
-use crate::system::rigid::{self, Accelerated, Given, Mass, square};
+use crate::system::rigid::{Accelerated, Given, LinkMotion, Mass, square};
 
 /// A tree of links in motion.
 #[derive(Clone, Debug)]
@@ -375,7 +375,7 @@ struct Composite {
 
 impl Composite {
     /// Of a link that carries nothing.
-    fn of(pool: &mut Pool, link: &Link, motion: rigid::Motion<'_>) -> Self {
+    fn of(pool: &mut Pool, link: &Link, motion: LinkMotion<'_>) -> Self {
         let (drift, swirl) = (Value::zero(pool, 3), Value::zero(pool, 9));
         let wrench = link.counted.wrench(pool, motion);
         let Mass { mass, first, second } = link.counted.clone();

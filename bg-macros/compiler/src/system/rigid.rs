@@ -2,7 +2,8 @@
 //!
 //! In: links with their coordinates. Out: values in the axes of each link. Accelerations are those of the links' origins,
 //! so that no velocity of a point is needed; what turning does is linear in the products of an angular velocity's
-//! components. The tensor is written by second moments, of which a wrench takes fewer terms.
+//! components. A full tensor is written by second moments, of which a wrench takes fewer terms (Khalil and Dombre, Modeling,
+//! Identification and Control of Robots, 2002, section 9.5, has the field of accelerations for forces).
 
 use super::link::{Freedom, Link, Moved, down};
 use crate::expr::{Id, Pool};
@@ -71,9 +72,9 @@ impl Accelerated {
     }
 
     /// How a link moves.
-    pub fn motion(&self, link: usize) -> Motion<'_> {
+    pub fn motion(&self, link: usize) -> LinkMotion<'_> {
         let [turning, there] = &self.links[link];
-        Motion { spin: &self.spins[link], turning, there }
+        LinkMotion { spin: &self.spins[link], turning, there }
     }
 
     /// What a link has of what carries it.
@@ -134,11 +135,11 @@ fn gyroscopic(pool: &mut Pool, about: &Value, square: &Value) -> Value {
     )
 }
 
-/// The rate of a body's angular momentum about its centre of mass, in its axes.
-pub fn rate_of_angular(pool: &mut Pool, central: &Value, spin: &Value, turning: &Value) -> Value {
+/// The moment J a + w x J w that turning takes, of a body with this tensor, in its axes.
+pub fn rate_of_angular(pool: &mut Pool, tensor: &Value, spin: &Value, turning: &Value) -> Value {
     let square = square(pool, spin);
-    let beside = gyroscopic(pool, central, &square);
-    central.multiply(pool, turning).add(pool, &beside)
+    let beside = gyroscopic(pool, tensor, &square);
+    tensor.multiply(pool, turning).add(pool, &beside)
 }
 
 /// What takes a place of a link to its acceleration beside that of its origin: a x r + w x (w x r) as a matrix.
@@ -147,20 +148,20 @@ fn field(pool: &mut Pool, spin: &Value, turning: &Value) -> Value {
     square(pool, spin).add(pool, &swung)
 }
 
-/// Mass, with its moments about a point.
+/// Mass, kg, with its moments about a point, in the axes of a link.
 #[derive(Clone, Debug)]
 pub struct Mass {
-    /// The mass.
+    /// The mass, kg.
     pub mass: Id,
-    /// The integral of r over the mass.
+    /// The integral of r over the mass, kg m.
     pub first: Value,
-    /// The integral of r r^T.
+    /// The integral of r r^T over it, kg m^2, by rows.
     pub second: Value,
 }
 
 /// How a link moves, in its axes.
 #[derive(Clone, Copy, Debug)]
-pub struct Motion<'a> {
+pub struct LinkMotion<'a> {
     /// Its angular velocity.
     pub spin: &'a Value,
     /// Its angular acceleration.
@@ -170,12 +171,12 @@ pub struct Motion<'a> {
 }
 
 impl Mass {
-    /// None.
+    /// No mass.
     pub fn none(pool: &mut Pool) -> Self {
         Self { mass: pool.zero(), first: Value::zero(pool, 3), second: Value::zero(pool, 9) }
     }
 
-    /// A body's about its centre of mass, from its tensor there.
+    /// A body's mass about its centre, from its tensor there.
     pub fn central(pool: &mut Pool, mass: Id, tensor: &Value) -> Self {
         let trace = pool.sum(&[tensor.0[0], tensor.0[4], tensor.0[8]]);
         let half = pool.scale(0.5, trace);
@@ -184,7 +185,7 @@ impl Mass {
         Self { mass, first: Value::zero(pool, 3), second }
     }
 
-    /// Both.
+    /// Both together, about one point.
     pub fn add(&self, pool: &mut Pool, other: &Self) -> Self {
         Self {
             mass: pool.add(self.mass, other.mass),
@@ -193,7 +194,7 @@ impl Mass {
         }
     }
 
-    /// About another point, from which this one is at `by`.
+    /// The same about another point, from which this one is at `by`.
     pub fn seen(&self, pool: &mut Pool, by: &Value) -> Self {
         let at_point = by.multiply(pool, &Value::scalar(self.mass));
         let half = at_point.scale(pool, 0.5).add(pool, &self.first).outer(pool, by);
@@ -208,15 +209,15 @@ impl Mass {
         Value((0..9).map(|k| if k % 4 == 0 { sums[k / 4] } else { pool.neg(second[k]) }).collect())
     }
 
-    /// Whether the axes are those of the tensor and mass is away from all planes of these but one: then moments take fewer
-    /// terms by the tensor than by second moments.
+    /// Whether moments take fewer terms by the tensor than by second moments: these are diagonal, and neither of the first
+    /// two is zero.
     pub fn is_by_tensor(&self, pool: &Pool) -> bool {
         let zero = |k: usize| pool.is_zero(self.second.0[k]);
         [1, 2, 3, 5, 6, 7].into_iter().all(zero) && ![0, 4].into_iter().any(zero)
     }
 
     /// Moment about a link's origin and force that its mass takes, by how it moves.
-    pub fn wrench(&self, pool: &mut Pool, Motion { spin, turning, there }: Motion<'_>) -> [Value; 2] {
+    pub fn wrench(&self, pool: &mut Pool, LinkMotion { spin, turning, there }: LinkMotion<'_>) -> [Value; 2] {
         let lever = self.first.cross(pool, there);
         let field = field(pool, spin, turning);
         let moment = if self.is_by_tensor(pool) {
@@ -232,7 +233,7 @@ impl Mass {
     }
 }
 
-/// The integral of r x (F r) over the mass, of second moments S: what F S is not symmetric by.
+/// The integral of r x (F r) over the mass, by its second moments S: the antisymmetric part of F S.
 fn turning_of(pool: &mut Pool, field: &Value, second: &Value) -> Value {
     let (f, s) = (|row: usize, column: usize| field.0[3 * (row % 3) + column % 3], &second.0);
     let s = |row: usize, column: usize| s[3 * (row % 3) + column % 3];

@@ -11,7 +11,7 @@ use crate::expr::{Id, Pool};
 use crate::system::Value;
 use crate::system::equations::definite::Factors;
 use crate::system::link::{Freedom, Link, Locked, Moved, down, matrix_up, up};
-use crate::system::rigid::{Accelerated, Given, Motion, brought};
+use crate::system::rigid::{Accelerated, Given, LinkMotion, brought};
 
 /// A moment is J a + H b + n, a force H^T a + M b + f, by the angular acceleration a and the acceleration b.
 #[derive(Clone, Debug)]
@@ -172,7 +172,7 @@ impl Articulated {
 }
 
 /// A link that carries nothing and moves so.
-fn rigid(pool: &mut Pool, link: &Link, own: &Moved, motion: Motion<'_>) -> Articulated {
+fn rigid(pool: &mut Pool, link: &Link, own: &Moved, motion: LinkMotion<'_>) -> Articulated {
     let about = link.counted.tensor(pool);
     let across = link.counted.first.skew(pool);
     let heavy = Value::diagonal(pool, &[link.counted.mass; 3]);
