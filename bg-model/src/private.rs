@@ -15,7 +15,7 @@ pub use bg_macros::picture;
 pub use crate::model::dynamics::Abreast;
 pub use crate::model::dynamics::Over;
 pub use crate::model::iteration::{Equations, lift, newton};
-pub use crate::model::joined::joined;
+pub use crate::model::joined::{joined, taken};
 pub use crate::model::linear::pivot::Pivot;
 #[cfg(feature = "std")]
 pub use crate::model::mechanism::into_lanes;

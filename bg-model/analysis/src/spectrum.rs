@@ -7,8 +7,12 @@
 
 use std::f64::consts::TAU;
 
-use rustfft::FftPlanner;
+use std::sync::Arc;
+
+use rustfft::algorithm::butterflies::{Butterfly4, Butterfly8};
+use rustfft::algorithm::{BluesteinsAlgorithm, Radix4};
 use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftDirection};
 
 /// A spectrum: what it is over, and the amplitude there.
 pub type Spectrum = Vec<(f64, f64)>;
@@ -52,9 +56,22 @@ fn spectrum(places: &[f64], values: &[f64]) -> Spectrum {
     let mean = (0..count).fold(0.0, |sum, k| sum + window(k) * even[k]) / weight;
     let mut numbers: Vec<Complex<f64>> =
         even.iter().enumerate().map(|(k, value)| Complex::new((value - mean) * window(k), 0.0)).collect();
-    FftPlanner::new().plan_fft_forward(count).process(&mut numbers);
+    transform(count).process(&mut numbers);
     let length = step * count as f64;
     (1..=count / 2).map(|k| (k as f64 / length, 2.0 * numbers[k].norm() / weight)).collect()
+}
+
+/// The transform of `count` numbers, four or more: by Bluestein's algorithm (L. I. Bluestein, IEEE Trans. Audio
+/// Electroacoustics 18 (1970) 451) over one whose length is a power of two. The crate's planner would choose among all its
+/// algorithms, which are a fifth of the code of this package then.
+fn transform(count: usize) -> BluesteinsAlgorithm<f64> {
+    let exponent = (2 * count - 1).next_power_of_two().ilog2();
+    let inner = if exponent.is_multiple_of(2) {
+        Radix4::new_with_base((exponent - 2) / 2, Arc::new(Butterfly4::new(FftDirection::Forward)))
+    } else {
+        Radix4::new_with_base((exponent - 3) / 2, Arc::new(Butterfly8::new(FftDirection::Forward)))
+    };
+    BluesteinsAlgorithm::new(count, Arc::new(inner))
 }
 
 /// The value at `place`, on a straight line between those beside it.
@@ -68,6 +85,21 @@ fn at(places: &[f64], values: &[f64], place: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn transforms_of_any_length_are_those_by_definition() {
+        for count in [4, 5, 8, 12, 31, 37, 64, 100] {
+            let numbers: Vec<Complex<f64>> =
+                (0..count).map(|k| Complex::new((0.7 * k as f64).sin(), (1.3 * k as f64).cos())).collect();
+            let mut found = numbers.clone();
+            transform(count).process(&mut found);
+            for (k, found) in found.iter().enumerate() {
+                let turn = |j: usize| Complex::from_polar(1.0, -TAU * ((j * k) % count) as f64 / count as f64);
+                let sum: Complex<f64> = numbers.iter().enumerate().map(|(j, number)| number * turn(j)).sum();
+                assert!((sum - found).norm() < 1e-13 * count as f64, "{count} {k} {sum} {found}");
+            }
+        }
+    }
 
     fn peak(spectrum: &Spectrum) -> (f64, f64) {
         *spectrum.iter().max_by(|a, b| a.1.total_cmp(&b.1)).unwrap()

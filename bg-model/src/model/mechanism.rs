@@ -16,7 +16,7 @@ use crate::model::parameters::{ParameterError, Parameters};
 #[cfg(all(feature = "std", target_arch = "x86_64"))]
 use crate::model::scalar::lanes::{Avx2, Avx512};
 #[cfg(feature = "std")]
-use crate::model::scalar::lanes::{Lanes, Vector};
+use crate::model::scalar::lanes::{Lanes, Vector, at};
 #[cfg(all(feature = "std", not(target_arch = "x86_64")))]
 use crate::model::scalar::slopes::Eight;
 use crate::model::scalar::slopes::Slopes;
@@ -321,7 +321,7 @@ pub fn into_lanes<V: Vector, Me: Mechanism>(
     model: &Me,
     values: &[Lanes<V>],
 ) -> Result<Box<dyn Abreast<V>>, ParameterError> {
-    model.visit_lifted::<Lanes<V>, Lanes<V>, _>(IntoLanes(values))
+    model.visit_lifted::<f64, Lanes<V>, _>(IntoLanes(values))
 }
 
 #[cfg(feature = "std")]
@@ -372,27 +372,29 @@ impl<V: Vector, Me: Mechanism> Laned<V> for InEachBuild<Me> {
     }
 }
 
-/// Makes a model of values of several runs.
+/// Makes the model of each of several runs, and joins them.
 #[cfg(feature = "std")]
 struct IntoLanes<'a, V>(&'a [Lanes<V>]);
 
 #[cfg(feature = "std")]
-impl<V: Vector> LiftedVisitor<Lanes<V>, Lanes<V>> for IntoLanes<'_, V> {
+impl<V: Vector> LiftedVisitor<f64, Lanes<V>> for IntoLanes<'_, V> {
     type Output = Result<Box<dyn Abreast<V>>, ParameterError>;
 
     fn visit<Mo, Li, Ot, const N: usize, const G: usize, const M: usize>(
         self,
         _: &Mo,
         _: impl Fn(&[f64]) -> Result<Mo, ParameterError>,
-        lifted: impl Fn(&[Lanes<V>]) -> Result<Li, ParameterError>,
-        _: impl Fn(&[&Li], fn(&[Lanes<V>]) -> Lanes<V>) -> Ot,
+        lifted: impl Fn(&[f64]) -> Result<Li, ParameterError>,
+        joined: impl Fn(&[&Li], fn(&[f64]) -> Lanes<V>) -> Ot,
     ) -> Self::Output
     where
         Mo: Model<f64, N, G, M> + Clone + 'static,
-        Li: Model<Lanes<V>, N, G, M> + 'static,
+        Li: Model<f64, N, G, M> + 'static,
         Ot: Model<Lanes<V>, N, G, M> + 'static,
     {
-        Ok(Box::new(InLanes::<Li, N, G>(lifted(self.0)?)))
+        let models = (0..V::LANES).map(|place| lifted(&at(place, self.0))).collect::<Result<Vec<Li>, _>>()?;
+        let models: Vec<&Li> = models.iter().collect();
+        Ok(Box::new(InLanes::<Ot, N, G>(joined(&models, Lanes::side_by_side))))
     }
 }
 

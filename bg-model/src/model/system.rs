@@ -10,6 +10,7 @@ use crate::model::assembly::AssemblyError;
 use crate::model::capability::{Absent, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
 use crate::model::delay::States;
 use crate::model::description::Description;
+use crate::model::dynamics::Dynamics;
 use crate::model::holding::Redundancy;
 use crate::model::origin::Origin;
 use crate::model::scalar::Scalar;
@@ -293,6 +294,26 @@ pub trait Model<S: Scalar, const N: usize, const G: usize, const M: usize>: Syst
     /// As [`Model::start`].
     fn impulse_energy(&self) -> Result<S, AssemblyError> {
         Ok(S::from_f64(0.0))
+    }
+
+    /// Writes [`Model::start`] into `x`: that of `system`, which is this model over slices, so that nobody makes it a
+    /// second time.
+    #[doc(hidden)]
+    fn start_over(&self, _system: &dyn Dynamics<S>, x: &mut [S]) -> Result<(), AssemblyError> {
+        x.copy_from_slice(self.start()?.as_slice());
+        Ok(())
+    }
+
+    /// [`Model::impulse_energy`], likewise.
+    #[doc(hidden)]
+    fn impulse_energy_over(&self, _system: &dyn Dynamics<S>) -> Result<S, AssemblyError> {
+        self.impulse_energy()
+    }
+
+    /// [`Model::redundant`], likewise.
+    #[doc(hidden)]
+    fn redundant_over(&self, _system: &dyn Dynamics<S>) -> Vec<Redundancy> {
+        self.redundant()
     }
 
     /// Writes the observed outputs, in the order of `description().outputs`.

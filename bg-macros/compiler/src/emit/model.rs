@@ -150,7 +150,7 @@ impl Emission<'_> {
         let reactions = self.reactions();
         let input_copied = has_inputs.then(|| quote!(inputs: first.inputs.clone(),));
         let decided_copied = decided.copied();
-        let Constants { values, functions, lets, moved, .. } = constants;
+        let Constants { values, functions, lets, moved, joined, tables, .. } = constants;
         let Shape { n, g, m, p } = &self.shape;
         quote! {
             impl Model {
@@ -210,16 +210,24 @@ impl Emission<'_> {
 
                 /// The model each of whose numbers `of` makes of those of several.
                 fn joined<T: Scalar>(models: &[&Self], of: fn(&[S]) -> T) -> Model<T> {
-                    use ::bg_model::__private::joined;
+                    use ::bg_model::__private::{joined, taken};
                     let first = models[0];
+                    let numbers = joined(models.len(), #tables, &|model, table| models[model].tables()[table], of);
+                    let mut rest = &numbers[..];
+                    let values = taken(&mut rest);
                     #moved
                     Model {
                         parameters: first.parameters.clone(),
-                        values: joined(models, |model| &model.values, of),
+                        values,
                         #input_copied
                         #decided_copied
                         #values
                     }
+                }
+
+                /// All tables of numbers.
+                fn tables(&self) -> [&[S]; #tables] {
+                    [&self.values, #joined]
                 }
 
                 /// The parameters.

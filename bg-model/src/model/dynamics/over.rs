@@ -2,6 +2,7 @@
 //!
 //! In: a [`System`] or [`Model`] in the scalar. Out: [`Over`], which hands over copies.
 
+use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::Deref;
 
@@ -144,11 +145,13 @@ where
     }
 
     fn start(&self) -> Result<Vec<S>, AssemblyError> {
-        Ok(self.0.start()?.as_slice().to_vec())
+        let mut x = vec![S::from_f64(0.0); N];
+        self.0.start_over(self, &mut x)?;
+        Ok(x)
     }
 
     fn redundant(&self) -> Vec<Redundancy> {
-        self.0.redundant()
+        self.0.redundant_over(self)
     }
 
     fn decided(&self) -> Vec<f64> {
@@ -156,7 +159,7 @@ where
     }
 
     fn impulse_energy(&self) -> Result<S, AssemblyError> {
-        self.0.impulse_energy()
+        self.0.impulse_energy_over(self)
     }
 
     fn outputs(&self, t: S, x: &[S], negative: &[S::Switch], y: &mut [S]) {

@@ -3,6 +3,7 @@
 //! In: a [`System`] or [`Model`] whose numbers are in its type. Out: [`Typed`]: rates, forces, series and eliminations
 //! are compiled for the vectors of the machine.
 
+use alloc::vec;
 use alloc::vec::Vec;
 use core::ops::{Deref, Range};
 
@@ -279,11 +280,13 @@ where
     }
 
     fn start(&self) -> Result<Vec<f64>, AssemblyError> {
-        Ok(self.of.start()?.as_slice().to_vec())
+        let mut x = vec![0.0; N];
+        self.of.start_over(self, &mut x)?;
+        Ok(x)
     }
 
     fn redundant(&self) -> Vec<Redundancy> {
-        self.of.redundant()
+        self.of.redundant_over(self)
     }
 
     fn decided(&self) -> Vec<f64> {
@@ -291,7 +294,7 @@ where
     }
 
     fn impulse_energy(&self) -> Result<f64, AssemblyError> {
-        self.of.impulse_energy()
+        self.of.impulse_energy_over(self)
     }
 
     fn outputs(&self, t: f64, x: &[f64], negative: &[bool], y: &mut [f64]) {

@@ -28,7 +28,10 @@ pub(super) struct Constants {
     pub(super) values: TokenStream,
     pub(super) functions: TokenStream,
     pub(super) lets: TokenStream,
-    /// The `let`s for the same tables of several models, joined.
+    /// The tables of a model, in an array after its parameters, and how many these are together.
+    pub(super) joined: TokenStream,
+    pub(super) tables: usize,
+    /// The `let`s that take the same tables of several models, joined, from the numbers of all.
     pub(super) moved: TokenStream,
     pub(super) has_pairs: bool,
 }
@@ -36,7 +39,7 @@ pub(super) struct Constants {
 impl Emission<'_> {
     /// The tables of the running model, and of their pairs; `scalar` is what the model's struct calls it.
     pub(super) fn constants(&self, scalar: &Ident) -> Constants {
-        let mut made = Constants::default();
+        let mut made = Constants { tables: 1, ..Constants::default() };
         for table in self.constant_tables() {
             self.add_table(&mut made, &table, scalar);
         }
@@ -76,7 +79,9 @@ impl Emission<'_> {
         let decided = self.decided();
         let (pass, argument) = (decided.pass(), decided.arguments());
         made.lets.extend(quote!(let #field = Self::#function(&values #pass);));
-        made.moved.extend(quote!(let #field = joined(models, |model| &model.#field, of);));
+        made.joined.extend(quote!(&self.#field,));
+        made.tables += 1;
+        made.moved.extend(quote!(let #field = taken(&mut rest);));
         made.functions.extend(quote! {
             #[doc = #doc]
             fn #function(parameters: &[S; #parameters] #argument) -> [S; #count] {
@@ -106,7 +111,17 @@ impl Emission<'_> {
         });
     }
 
-    fn constant_table(&self, routine: &Routine) -> TokenStream {
+    /// The body of a function that gives constants, from `parameters` and what the start pose decides.
+    pub(super) fn constant_table(&self, routine: &Routine) -> TokenStream {
+        if let Some(tabled) = self.tabled_once(routine) {
+            let count = routine.results.len();
+            return quote! {
+                let mut values = [S::from_f64(0.0); #count];
+                let to = &mut values;
+                #tabled
+                values
+            };
+        }
         let parameters = self.parameter_bindings(&[routine]);
         let (statements, results) = self.body(routine);
         quote! { #parameters #statements [#(#results),*] }

@@ -17,17 +17,10 @@ impl Emission<'_> {
         self.with_names(|names| statements(routine, names))
     }
 
-    /// `let c`: the constants of a program that is evaluated by itself, from `parameters`; before it the parameters it
-    /// reads.
+    /// `let c`: the constants of a program that is evaluated by itself, from `parameters`.
     pub(super) fn own_constants(&self, program: &Program<1>) -> TokenStream {
-        let [routine] = &program.routines;
-        let parameters = self.parameter_bindings(&[&program.constants, routine]);
-        let (constants, table) = self.body(&program.constants);
-        let entries = table.len();
-        quote! {
-            #parameters
-            let c: [S; #entries] = { #constants [#(#table),*] };
-        }
+        let (entries, constants) = (program.constants.results.len(), self.constant_table(&program.constants));
+        quote!(let c: [S; #entries] = { #constants };)
     }
 
     /// The statements of a function that evaluates a program by itself at a state, with constants of its own, and its
@@ -35,12 +28,13 @@ impl Emission<'_> {
     pub(super) fn by_itself(&self, program: &Program<1>) -> (TokenStream, Vec<TokenStream>) {
         let [routine] = &program.routines;
         let (decided, constants) = (self.decided().read(), self.own_constants(program));
-        let bindings = self.dynamic_bindings(routine);
+        let (parameters, bindings) = (self.parameter_bindings(&[routine]), self.dynamic_bindings(routine));
         let (statements, results) = self.body(routine);
         let body = quote! {
             let parameters = &self.values;
             #decided
             #constants
+            #parameters
             let [x] = &x.data.0;
             #bindings
             #statements

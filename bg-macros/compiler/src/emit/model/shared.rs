@@ -149,7 +149,13 @@ impl Emission<'_> {
         self.where_shared(|_| {
             quote! {
                 fn redundant(&self) -> ::bg_model::__private::vec::Vec<::bg_model::holding::Redundancy> {
-                    ::bg_model::__private::redundant(self, &::bg_model::__private::Over::<_, #n, #g, 0>(self))
+                    let over = &::bg_model::__private::Over::<_, #n, #g, 0>(self);
+                    ::bg_model::system::Model::redundant_over(self, over)
+                }
+                fn redundant_over(
+                    &self, system: &dyn ::bg_model::dynamics::Dynamics<S>,
+                ) -> ::bg_model::__private::vec::Vec<::bg_model::holding::Redundancy> {
+                    ::bg_model::__private::redundant(self, system)
                 }
             }
         })

@@ -23,12 +23,14 @@ impl Emission<'_> {
             let [routine] = &program.routines;
             let function = identifier(&routine.name);
             let constants = self.own_constants(program);
-            let (statements, results) = self.body(routine);
+            let written = self.tabled_once(routine).unwrap_or_else(|| {
+                let (parameters, (statements, results)) = (self.parameter_bindings(&[routine]), self.body(routine));
+                quote!(#parameters #statements to.copy_from_slice(&[#(#results),*]);)
+            });
             quote! {
                 fn #function(parameters: &[S; #parameters], u: &[S], to: &mut [S]) {
                     #constants
-                    #statements
-                    to.copy_from_slice(&[#(#results),*]);
+                    #written
                 }
             }
         });
@@ -39,18 +41,26 @@ impl Emission<'_> {
     pub(super) fn start(&self) -> (TokenStream, TokenStream) {
         let Shape { n, g, .. } = &self.shape;
         let over = quote!(&::bg_model::__private::Over::<_, #n, #g, 0>(self));
+        let system = quote!(system: &dyn ::bg_model::dynamics::Dynamics<S>);
+        let error = quote!(::bg_model::assembly::AssemblyError);
         let impulse_energy = self.model.programs.holding.as_ref().map(|_| {
             quote! {
-                fn impulse_energy(&self) -> Result<S, ::bg_model::assembly::AssemblyError> {
-                    ::bg_model::__private::start(self, #over, &mut [S::from_f64(0.0); #n])
+                fn impulse_energy(&self) -> Result<S, #error> {
+                    ::bg_model::system::Model::impulse_energy_over(self, #over)
+                }
+                fn impulse_energy_over(&self, #system) -> Result<S, #error> {
+                    ::bg_model::__private::start(self, system, &mut [S::from_f64(0.0); #n])
                 }
             }
         });
         let start = quote! {
-            fn start(&self) -> Result<SVector<S, #n>, ::bg_model::assembly::AssemblyError> {
+            fn start(&self) -> Result<SVector<S, #n>, #error> {
                 let mut x = SVector::from([S::from_f64(0.0); #n]);
-                ::bg_model::__private::start(self, #over, x.as_mut_slice())?;
+                ::bg_model::system::Model::start_over(self, #over, x.as_mut_slice())?;
                 Ok(x)
+            }
+            fn start_over(&self, #system, x: &mut [S]) -> Result<(), #error> {
+                ::bg_model::__private::start(self, system, x).map(|_| ())
             }
             #impulse_energy
         };

@@ -25,6 +25,8 @@ pub(super) const SIZES: &str = "size_constants";
 const SHORTEST: usize = 100;
 /// Longer ones that are rarely asked are tables alone.
 const LONGEST_RARE: usize = 400;
+/// Longer ones of parameters, which are asked once for each model that is made, are tables alone.
+const LONGEST_ONCE: usize = 50;
 
 /// A routine of the running model.
 #[derive(Clone, Copy)]
@@ -155,30 +157,55 @@ impl Emission<'_> {
         if !Asked::often(routine, CONSTANTS).is_tabled() {
             return None;
         }
-        let Table { numbers, others, constants: count, batches, results } = Table::of(routine, self.states.len());
-        let [numbers, batches, results] = [&numbers, &batches, &results].map(|bytes| Literal::byte_string(bytes));
-        let (operations, found) = (routine.assignments.len(), names::found(routine));
-        let inputs = self.input_bindings(routine, "t");
-        let others = self.with_names(|names| parsed_each(others.iter().map(|&symbol| (names.symbol)(symbol))));
+        let table = Table::of(routine, self.states.len(), &Symbol::as_state);
+        let (found, inputs) = (names::found(routine), self.input_bindings(routine, "t"));
+        let others = self.with_names(|names| parsed_each(table.others.iter().map(|&symbol| (names.symbol)(symbol))));
         let chooses = routine.assignments.iter().any(|of| matches!(of.operation, Operation::Select { .. }));
         let negative = if chooses { quote!(negative) } else { quote!(&[]) };
+        let (count, table) = (table.constants, table.written(routine));
         Some(quote! {
-            static TABLE: ::bg_model::__private::Table = ::bg_model::__private::Table {
-                numbers: #numbers, operations: #operations, batches: #batches, results: #results,
-            };
+            #table
             #found
             #inputs
             let read = [x.as_slice(), &[#(#others),*], &self.#constants[..#count]];
             ::bg_model::__private::evaluate(&TABLE, read, #negative, to);
         })
     }
+
+    /// Statements that write what a routine of parameters and of what a start has, its unknowns `u` among them, gives
+    /// into the slice `to`, by its table; none of a short one. It reads the constants `c`, where it reads any.
+    pub(super) fn tabled_once(&self, routine: &Routine) -> Option<TokenStream> {
+        if routine.assignments.len() <= LONGEST_ONCE {
+            return None;
+        }
+        let table = Table::of(routine, self.model.equations.parameters.len(), &|symbol| match symbol {
+            Symbol::Parameter(index) => Some(index as usize),
+            _ => None,
+        });
+        let others = self.with_names(|names| {
+            parsed_each(table.others.iter().map(|&symbol| match symbol {
+                Symbol::Kept(index) => format!("S::from_f64(kept[{index}])"),
+                Symbol::Side(index) => format!("S::from_f64(sides[{index}])"),
+                _ => (names.symbol)(symbol),
+            }))
+        });
+        let constants = match table.constants {
+            0 => quote!(&[]),
+            count => quote!(&c[..#count]),
+        };
+        let table = table.written(routine);
+        Some(quote! {
+            #table
+            ::bg_model::__private::evaluate(&TABLE, [parameters, &[#(#others),*], #constants], &[], to);
+        })
+    }
 }
 
-/// A routine as a table, and what it reads after numbers and states.
+/// A routine as a table, and what it reads after numbers and the first array: states, or parameters.
 struct Table {
     /// In bytes.
     numbers: Vec<u8>,
-    /// Symbols that are no states.
+    /// Symbols that are not in the first array.
     others: Vec<Symbol>,
     /// How many constants, after these.
     constants: usize,
@@ -189,8 +216,8 @@ struct Table {
 }
 
 impl Table {
-    /// That of a routine of a model with so many states.
-    fn of(routine: &Routine, states: usize) -> Self {
+    /// That of a routine which reads an array of so many numbers first: `place` is that of a symbol in it.
+    fn of(routine: &Routine, first: usize, place: &dyn Fn(Symbol) -> Option<usize>) -> Self {
         let (mut numbers, mut others, mut constants) = (BTreeMap::new(), Vec::new(), 0);
         let operands = routine.assignments.iter().flat_map(|of| of.operation.operands());
         for operand in operands.chain(routine.results.iter().copied()) {
@@ -199,7 +226,7 @@ impl Table {
                     let next = numbers.len();
                     numbers.entry(value.to_bits()).or_insert(next);
                 }
-                Operand::Symbol(symbol) if symbol.as_state().is_none() && !others.contains(&symbol) => {
+                Operand::Symbol(symbol) if place(symbol).is_none() && !others.contains(&symbol) => {
                     others.push(symbol);
                 }
                 Operand::Constant(index) => constants = constants.max(index as usize + 1),
@@ -209,15 +236,15 @@ impl Table {
         let read = |operand: Operand| match operand {
             Operand::Number(value) => Read::Number(value, small(numbers[&value.to_bits()])),
             Operand::Symbol(symbol) => {
-                let other = || states + others.iter().position(|&other| other == symbol).expect("it is read");
-                Read::Place(small(numbers.len() + symbol.as_state().unwrap_or_else(other)))
+                let other = || first + others.iter().position(|&other| other == symbol).expect("it is read");
+                Read::Place(small(numbers.len() + place(symbol).unwrap_or_else(other)))
             }
-            Operand::Constant(index) => Read::Place(small(numbers.len() + states + others.len()) + index),
+            Operand::Constant(index) => Read::Place(small(numbers.len() + first + others.len()) + index),
             Operand::Temporary(index) => Read::Value(index),
         };
         let operations: Vec<Operation> = routine.assignments.iter().map(|of| of.operation.clone()).collect();
-        let first = small(numbers.len() + states + others.len() + constants);
-        let Batches { words, values } = batches(&operations, first, &read);
+        let read_count = small(numbers.len() + first + others.len() + constants);
+        let Batches { words, values } = batches(&operations, read_count, &read);
         let result = |&result: &Operand| match read(result) {
             Read::Place(place) | Read::Number(_, place) => place,
             Read::Value(value) => values[value as usize],
@@ -230,6 +257,18 @@ impl Table {
             batches: words.into_iter().flat_map(u32::to_le_bytes).collect(),
             others,
             constants,
+        }
+    }
+
+    /// `static TABLE`.
+    fn written(&self, routine: &Routine) -> TokenStream {
+        let [numbers, batches, results] =
+            [&self.numbers, &self.batches, &self.results].map(|bytes| Literal::byte_string(bytes));
+        let operations = routine.assignments.len();
+        quote! {
+            static TABLE: ::bg_model::__private::Table = ::bg_model::__private::Table {
+                numbers: #numbers, operations: #operations, batches: #batches, results: #results,
+            };
         }
     }
 }

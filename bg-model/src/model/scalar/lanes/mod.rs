@@ -53,6 +53,11 @@ impl<V: Vector> Lanes<V> {
         Self(V::new(numbers))
     }
 
+    /// A number for each place.
+    pub fn side_by_side(numbers: &[f64]) -> Self {
+        Self::each(|place| numbers[place])
+    }
+
     /// The number at a place.
     pub fn get(self, lane: usize) -> f64 {
         self.0.numbers().as_ref()[lane]
