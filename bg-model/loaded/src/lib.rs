@@ -16,11 +16,12 @@ mod text;
 
 pub use bg_compiler::source::syntax::files::{Open, Opened};
 pub use bg_compiler::source::syntax::points::with_points;
+pub use bg_compiler::source::told::Told;
 pub use blueprint::Blueprint;
 pub use bundle::{Bundle, Chosen};
 pub use code::BackEnd;
 pub use interpreted::Interpreted;
 pub use text::{
     Counted, Fault, Graph, Model, UsedFile, Wanted, check_file, load, load_file, load_wanted, macro_calls,
-    on_a_large_stack, syntax_faults,
+    on_a_large_stack, syntax_faults, told,
 };

@@ -6,7 +6,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use bg_loaded::{Fault, Graph};
+use bg_loaded::{Fault, Graph, Told, told};
 use bg_model::dynamics::branches;
 use bg_workbench::Program;
 use bg_workbench::inputs::Setting;
@@ -27,6 +27,12 @@ use serde::{Deserialize, Serialize};
 pub enum Question {
     /// What is wrong with a text, all its models looked at: what is known of it.
     Check {
+        /// The text.
+        text: String,
+    },
+    /// What is told of the words and functions of a text: `{ "told": [{ "bytes": [FROM, TO], "head": .., "meaning": ..,
+    /// "units": .., "example": .. }] }`, in the order of the text; the last two of functions alone.
+    Words {
         /// The text.
         text: String,
     },
@@ -103,6 +109,28 @@ struct KnownScene {
     about: String,
 }
 
+#[derive(Debug, Serialize)]
+struct Words<'a> {
+    told: &'a [Word<'a>],
+}
+
+/// What is told of a word.
+#[derive(Debug, Serialize)]
+struct Word<'a> {
+    bytes: [usize; 2],
+    head: &'a str,
+    meaning: &'a str,
+    units: Option<&'a str>,
+    example: Option<&'a str>,
+}
+
+impl<'a> Word<'a> {
+    fn of(told: &'a Told) -> Self {
+        let Told { bytes, head, meaning, units, example } = told;
+        Self { bytes: [bytes.start, bytes.end], head, meaning, units: *units, example: *example }
+    }
+}
+
 /// A page, or a fault.
 #[derive(Debug, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -136,6 +164,9 @@ impl Answerer {
                 let wanted =
                     Wanted { scene: Some(scene.clone().unwrap_or_default()), counted: Counted::Made, most: None };
                 self.checked(text, &wanted, Some((graph, scene)))
+            }
+            Ok(Question::Words { text }) => {
+                json(&Words { told: &told(&text).iter().map(Word::of).collect::<Vec<_>>() })
             }
             Ok(Question::Report(run)) => json(&self.told(|program, scene| {
                 let order = order(program, scene, &run);

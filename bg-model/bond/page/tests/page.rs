@@ -43,6 +43,7 @@ fn questions() -> Vec<Value> {
         json!({ "ask": "check", "text": first.replace("rad = 0.5", "radd = 0.5") }),
         json!({ "ask": "check", "text": "graph A { use \"b.bond\"; }" }),
         json!({ "ask": "check", "text": "(".repeat(300) }),
+        json!({ "ask": "words", "text": first }),
         json!({ "ask": "compile", "text": text("slider_crank"), "graph": "Other", "scene": "planar-slider-crank" }),
         json!({ "ask": "report", "t_end": 0.1 }),
         json!({ "ask": "answer" }),
@@ -108,9 +109,15 @@ fn what_is_compiled_can_be_chosen_and_run() {
     assert_eq!(answers[7]["faults"][0]["code"], "BG0301");
     assert!(answers[8]["faults"][0]["message"].is_string(), "a text alone uses no files: {}", answers[8]);
     assert!(answers[9]["faults"][0]["message"].as_str().unwrap().contains("more than 200 deep"));
-    assert_eq!(answers[10]["chosen"], json!(["SliderCrank", "planar-slider-crank"]), "a graph that is there");
-    assert!(answers[11]["page"].as_str().expect("a page").contains("<h1>SliderCrank: PlanarSliderCrank</h1>"));
-    assert!(answers[12]["fault"].as_str().unwrap().starts_with("the question cannot be read: "));
+    let told = answers[10]["told"].as_array().expect("words");
+    let word = |name: &str| told.iter().find(|word| word["head"].as_str().is_some_and(|head| head.starts_with(name)));
+    assert!(word("stiffness, in a joint").is_some_and(|word| word["meaning"].as_str().unwrap().len() > 20));
+    let function = word("rotation_z(a)").expect("a function");
+    let [from, to] = [0, 1].map(|end| function["bytes"][end].as_u64().unwrap() as usize);
+    assert_eq!((&text("first")[from..to], function["example"].is_string()), ("rotation_z", true));
+    assert_eq!(answers[11]["chosen"], json!(["SliderCrank", "planar-slider-crank"]), "a graph that is there");
+    assert!(answers[12]["page"].as_str().expect("a page").contains("<h1>SliderCrank: PlanarSliderCrank</h1>"));
+    assert!(answers[13]["fault"].as_str().unwrap().starts_with("the question cannot be read: "));
 }
 
 #[test]
@@ -168,6 +175,14 @@ fn a_browser_compiles_while_one_types() {
     assert_eq!((&verdict["title"], &verdict["bonds"]), (&json!("Pendulum"), &json!(23)));
     assert!(verdict["charts"].as_u64().is_some_and(|count| count >= 3));
     assert_eq!(verdict["overflow"], 0, "nothing is wider than the window");
+    let told = |word: &str| verdict["told"][word].as_array().expect("what is told").clone();
+    let function = told("rotation_z");
+    assert_eq!(
+        (&function[0], &function[1]),
+        (&json!("rotation_z(a)"), &json!("The rotation matrix about the z axis."))
+    );
+    assert!(function[3].as_str().is_some_and(|example| example.contains("rotation_z(30 deg)")), "{function:?}");
+    assert_eq!((told("tilt").len(), &told("tilt")[0]), (2, &json!("tilt, in a joint")));
     // The fault stands where the text has it, and the machine of before is still there.
     assert_eq!((&verdict["marked"], &verdict["old"]), (&json!("radd"), &json!(true)));
     assert!(verdict["fault"].as_str().unwrap().starts_with("4:18 BG0301 `radd`"), "{}", verdict["fault"]);

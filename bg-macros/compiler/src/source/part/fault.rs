@@ -134,7 +134,9 @@ impl Explain for PartFault {
                 [one] => format!("write its output, `{one}`"),
                 several => format!("write one of its outputs: {}", listed(several)),
             },
-            F::Large { .. } => "make it smaller; `bond` has an option for more, `--limit-statements`".to_owned(),
+            F::Large { .. } => {
+                "make it smaller; where a text is loaded, a larger `--limit-statements` allows it".to_owned()
+            }
             F::WatchesNothing { .. } => "name what to watch, or give the part an `observe { ... }`".to_owned(),
         }
     }

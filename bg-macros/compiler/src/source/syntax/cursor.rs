@@ -383,15 +383,20 @@ impl Cursor<'_> {
                 continue;
             }
             self.head = self.at;
-            if !self.starts_chain() && self.starts_statement() {
-                self.note_word(self.head);
-            }
+            self.note_beginning();
             if statement(self).is_err() {
                 self.skip_statement();
             }
             if self.at == self.head {
                 self.advance();
             }
+        }
+    }
+
+    /// Notes the word of the language ahead, where a statement begins with it.
+    pub fn note_beginning(&self) {
+        if !self.starts_chain() && self.starts_statement() {
+            self.note_word(self.at);
         }
     }
 

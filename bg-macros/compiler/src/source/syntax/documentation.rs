@@ -42,23 +42,26 @@ impl Cursor<'_> {
                 None => drop(self.note(start, &SyntaxFault::Attribute)),
             }
         }
+        if span.is_some() {
+            self.note_beginning();
+        }
         Documentation { text: lines.join("\n"), span }
     }
 
     /// `pub`, `pub(crate)` or nothing.
     pub fn visibility(&mut self) -> Parsed<Visibility> {
         let Some(span) = self.eat_word("pub") else { return Ok(Visibility::Private) };
-        let brackets = match self.peek() {
-            Some(TokenKind::Group(group)) if group.delimiter() == Delimiter::Parenthesis => group,
-            _ => return Ok(Visibility::Public(span)),
-        };
-        match Visibility::within(span, brackets) {
-            Some(visibility) => {
+        let visibility = match self.peek() {
+            Some(TokenKind::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
+                let within = Visibility::within(span, group);
+                let visibility = within.ok_or_else(|| self.unexpected("`(crate)`, `(super)` or `(in PATH)`"))?;
                 self.advance();
-                Ok(visibility)
+                visibility
             }
-            None => Err(self.unexpected("`(crate)`, `(super)` or `(in PATH)`")),
-        }
+            _ => Visibility::Public(span),
+        };
+        self.note_beginning();
+        Ok(visibility)
     }
 }
 

@@ -1,13 +1,15 @@
 // The editor.
-// In: its element, what is told of changes. Out: its text, which can be set; faults at their places.
+// In: its element, what is told of changes, what tells of words. Out: its text, which can be set; faults at their places;
+// what is told of the word under the pointer.
 
 import { defaultKeymap, history, historyKeymap, indentWithTab } from "@codemirror/commands";
 import { bracketMatching, indentOnInput, indentUnit, syntaxHighlighting } from "@codemirror/language";
 import { lintGutter, lintKeymap, setDiagnostics } from "@codemirror/lint";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
 import { EditorState, Transaction } from "@codemirror/state";
-import { drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, keymap, lineNumbers } from "@codemirror/view";
+import { drawSelection, EditorView, highlightActiveLine, highlightActiveLineGutter, hoverTooltip, keymap, lineNumbers } from "@codemirror/view";
 import { bond, colours } from "./colours.js";
+import { element, withCode } from "./elements.js";
 
 /** Where each byte of the text in UTF-8 stands in it, for those that are asked for in ascending order. */
 function places(text) {
@@ -23,20 +25,26 @@ function places(text) {
   };
 }
 
-/** The faults as what stands in the text from where to where. */
-export function placed(text, faults) {
+/** What has bytes of the text as what stands in it from where to where. */
+export function placed(text, all) {
   const place = places(text);
-  return faults.map((fault) => {
-    const [from, to] = [place(fault.bytes[0]), place(fault.bytes[1])];
-    return { ...fault, from, to };
+  return all.map((one) => {
+    const [from, to] = [place(one.bytes[0]), place(one.bytes[1])];
+    return { ...one, from, to };
   });
+}
+
+/** What is told of a word, as a reader sees it. */
+function told({ head, meaning, units, example }) {
+  const more = units === null ? [] : [element("p", {}, "Units: ", ...withCode(units)), element("pre", {}, example)];
+  return element("div", { class: "told" }, element("pre", {}, head), element("p", {}, ...withCode(meaning)), ...more);
 }
 
 export class Editor {
   #view;
 
-  /** `changed` is called when the reader changes the text. */
-  constructor(parent, changed) {
+  /** `changed` is called when the reader changes the text, `words` gives what is told of the words of one, as a promise. */
+  constructor(parent, changed, words) {
     const listener = EditorView.updateListener.of((update) => {
       const isReaders = update.transactions.some((transaction) => transaction.annotation(Transaction.userEvent));
       if (update.docChanged && isReaders) changed();
@@ -53,6 +61,14 @@ export class Editor {
       highlightActiveLine(),
       highlightActiveLineGutter(),
       highlightSelectionMatches(),
+      hoverTooltip(
+        async ({ state: { doc } }, at) => {
+          const text = doc.toString();
+          const word = placed(text, await words(text)).find(({ from, to }) => from <= at && at < to);
+          return word ? { pos: word.from, end: word.to, above: true, create: () => ({ dom: told(word) }) } : null;
+        },
+        { hideOnChange: true },
+      ),
       bond,
       syntaxHighlighting(colours),
       keymap.of([...defaultKeymap, ...searchKeymap, ...historyKeymap, ...lintKeymap, indentWithTab]),

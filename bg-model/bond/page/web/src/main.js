@@ -33,13 +33,15 @@ class Page {
   #timer;
   /** Counts what was to be shown: an answer for what was shown before is not shown. */
   #version = 0;
+  /** What is told of the words of a text, the last one that was asked for. */
+  #words = { text: null, told: null };
   #says = { compiled: "", run: "", rate: "" };
 
   constructor(examples, module) {
     this.examples = examples;
     this.runner = new Compiler(module);
     this.checker = new Compiler(module);
-    this.editor = new Editor(part("editor"), () => this.typed());
+    this.editor = new Editor(part("editor"), () => this.typed(), (text) => this.#told(text));
     this.shown = { text: "", graph: null, scene: "", t_end: null, step: null, inputs: {} };
     this.faults = [];
     // What a report in the frame asks for: something like a worker that runs the model which it shows.
@@ -76,6 +78,21 @@ class Page {
     this.editor.text = this.shown.text;
     await this.#update(isThere);
     if (unreadable !== null) this.#tell(unreadable, true);
+  }
+
+  /** What is told of the words of a text; nothing while it is being looked for faults in another one. */
+  async #told(text) {
+    if (this.#words.text !== text) {
+      const told = this.checker.ask({ ask: "words", text }).then(({ answer }) => answer.told);
+      this.#words = { text, told };
+    }
+    try {
+      return await this.#words.told;
+    } catch (fault) {
+      this.#words = { text: null, told: null };
+      if (fault instanceof Stopped) return [];
+      throw fault;
+    }
   }
 
   /** The reader has typed. */

@@ -51,6 +51,24 @@ async function found(page, motion, verdict) {
   const { scrollWidth, clientWidth } = document.documentElement;
   verdict.overflow = scrollWidth - clientWidth;
 
+  // What is told of a function and of a word under the pointer.
+  verdict.told = {};
+  for (const word of ["rotation_z", "tilt"]) {
+    const range = document.createRange();
+    const texts = document.createTreeWalker(document.querySelector(".cm-content"), NodeFilter.SHOW_TEXT);
+    while (texts.nextNode() && !texts.currentNode.data.includes(word));
+    range.setStart(texts.currentNode, texts.currentNode.data.indexOf(word));
+    range.setEnd(texts.currentNode, range.startOffset + word.length);
+    const { left, width, top, height } = range.getBoundingClientRect();
+    const place = { clientX: left + width / 2, clientY: top + height / 2, bubbles: true };
+    texts.currentNode.parentElement.dispatchEvent(new MouseEvent("mousemove", place));
+    const shown = await until(`what \`${word}\` is`, () => {
+      const told = document.querySelector(".told");
+      return told?.textContent.startsWith(word) ? told : null;
+    });
+    verdict.told[word] = [...shown.children].map((part) => part.textContent);
+  }
+
   // A fault, as it is typed, after letters of two and of four bytes.
   const before = performance.now();
   retype(page.editor, "Angle at", "\u00c4ngle \u{1f600} at");
