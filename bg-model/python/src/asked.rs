@@ -1,35 +1,70 @@
 //! What Python asks for: keyword arguments, plans and measurements as the workbench takes them.
 
 use std::collections::BTreeMap;
+use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 
 use bg_model::run::State;
 use bg_workbench::Program;
-use bg_workbench::calls::{self, Asked, Begin};
+use bg_workbench::calls::{self, Asked, Begin, Measurement};
 use bg_workbench::hint;
 use bg_workbench::sweep::folder::Folder;
 use bg_workbench::sweep::plan::Plan;
 use bg_workbench::sweep::{Outcome, Share, recipe, sweep};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::given::refused;
+use crate::signal::{Raised, Signal, input};
 use crate::waiting::Seen;
+
+/// What is asked, and what functions that are asked meanwhile have raised.
+#[derive(Default)]
+pub(crate) struct Question {
+    asked: Asked,
+    raised: Raised,
+}
+
+impl Question {
+    /// Both.
+    pub fn parts(self) -> (Asked, Raised) {
+        (self.asked, self.raised)
+    }
+}
+
+impl Deref for Question {
+    type Target = Asked;
+
+    fn deref(&self) -> &Asked {
+        &self.asked
+    }
+}
+
+impl DerefMut for Question {
+    fn deref_mut(&mut self) -> &mut Asked {
+        &mut self.asked
+    }
+}
 
 /// How a run is asked for in Python; what is not given is as on the command line.
 pub(crate) fn asked(
     scene: Option<String>,
-    set: Option<BTreeMap<String, f64>>,
+    set: Option<Numbers>,
     inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
     start: &str,
-    parameters: Option<BTreeMap<String, f64>>,
-) -> PyResult<Asked> {
-    let inputs = inputs.unwrap_or_default().into_iter();
-    let inputs =
-        inputs.map(|(name, value)| Ok(format!("{name}={}", value.str()?))).collect::<PyResult<Vec<String>>>()?;
-    let mut set = set.unwrap_or_default();
-    set.extend(parameters.unwrap_or_default());
+    parameters: Option<Numbers>,
+) -> PyResult<Question> {
+    let raised = Raised::default();
+    let (mut texts, mut signals) = (Vec::new(), BTreeMap::new());
+    for (name, value) in inputs.unwrap_or_default() {
+        match input(&name, &value, &raised)? {
+            Signal::Text(text) => texts.push(format!("{name}={text}")),
+            Signal::Setting(setting) => drop(signals.insert(name, setting)),
+        }
+    }
+    let (Numbers(mut set), Numbers(parameters)) = (set.unwrap_or_default(), parameters.unwrap_or_default());
+    set.extend(parameters);
     let start = match start {
         "model" => Begin::Model,
         "equilibrium" => Begin::Equilibrium,
@@ -42,7 +77,7 @@ pub(crate) fn asked(
             return Err(PyValueError::new_err(fault));
         }
     };
-    Ok(Asked { scene, set, inputs, start, ..Asked::default() })
+    Ok(Question { asked: Asked { scene, set, inputs: texts, signals, start, ..Asked::default() }, raised })
 }
 
 /// How it is integrated, where that is given.
@@ -68,6 +103,29 @@ pub(crate) fn integrated(
         integration.hint = Some(read.map_err(|fault| PyValueError::new_err(format!("hint {hint:?}: {fault}")))?);
     }
     Ok(())
+}
+
+/// Numbers by name.
+#[derive(Default)]
+pub(crate) struct Numbers(BTreeMap<String, f64>);
+
+impl<'py> FromPyObject<'_, 'py> for Numbers {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        let number = |(name, value): (String, Bound<'py, PyAny>)| {
+            let number = value
+                .extract()
+                .map_err(|_| PyTypeError::new_err(format!("{name}={value:?}: give a number, in the parameter's unit")));
+            Ok((name, number?))
+        };
+        given
+            .extract::<BTreeMap<String, Bound<'_, PyAny>>>()?
+            .into_iter()
+            .map(number)
+            .collect::<PyResult<_>>()
+            .map(Self)
+    }
 }
 
 /// A text, or several.
@@ -113,7 +171,8 @@ impl Source {
 impl Work {
     /// Does it as long as who waits for it says so.
     pub fn done(&self, program: &Program, seen: &Seen) -> Result<Outcome, String> {
-        let plan = self.plan.read(program)?;
+        let mut plan = self.plan.read(program)?;
+        plan.request.interrupt = seen.interrupt();
         let folder = Folder::claim(&self.out, &recipe::of(program, &plan)).map_err(|fault| fault.to_string())?;
         sweep(program, &plan, &folder, self.share, self.threads, &|done, all| {
             seen.done(done as f64 / all.max(1) as f64)
@@ -131,26 +190,15 @@ pub(crate) fn source(plan: &Bound<'_, PyAny>) -> PyResult<Source> {
     calls::toml_of_json(&text).map(Source::Text).map_err(refused)
 }
 
-/// What was measured, as the text of a CSV file: read from a path, or of columns by name.
-pub(crate) fn measured(data: &Bound<'_, PyAny>) -> PyResult<String> {
-    let Ok(columns) = data.getattr("items") else {
-        let path: PathBuf = data.extract()?;
-        return Ok(std::fs::read_to_string(path)?);
+/// What was measured: the path of a CSV file, or columns by name.
+pub(crate) fn measured(data: &Bound<'_, PyAny>) -> PyResult<Measurement> {
+    let Ok(columns) = data.getattr("items") else { return Ok(Measurement::File(data.extract()?)) };
+    let column = |item: PyResult<Bound<'_, PyAny>>| {
+        let (name, values): (String, Bound<'_, PyAny>) = item?.extract()?;
+        let values = values.extract().map_err(|_| {
+            PyValueError::new_err(format!("data: the column `{name}` has values that are no numbers; leave it out"))
+        });
+        Ok((name, values?))
     };
-    let mut named = Vec::new();
-    for item in columns.call0()?.try_iter()? {
-        let (name, values): (String, Vec<f64>) = item?.extract()?;
-        named.push((name, values));
-    }
-    named.sort_by_key(|(name, _)| name != "t");
-    let heads: Vec<&str> = named.iter().map(|(name, _)| name.as_str()).collect();
-    let rows = named.iter().map(|(_, values)| values.len()).max().unwrap_or_default();
-    if let Some((name, values)) = named.iter().find(|(_, values)| values.len() != rows) {
-        let fault = format!("data: the column `{name}` has {} values, another one {rows}", values.len());
-        return Err(PyValueError::new_err(fault));
-    }
-    let field = |value: f64| if value.is_finite() { value.to_string() } else { String::new() };
-    let row = |row| named.iter().map(|(_, values)| field(values[row])).collect::<Vec<_>>().join(",");
-    let lines: Vec<String> = std::iter::once(heads.join(",")).chain((0..rows).map(row)).collect();
-    Ok(lines.join("\n"))
+    columns.call0()?.try_iter()?.map(column).collect::<PyResult<_>>().map(Measurement::Columns)
 }

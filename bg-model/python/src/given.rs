@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::table::{Table, Values};
+use crate::worded::{all_in_python, in_python};
 
 pyo3::create_exception!(
     bg_python,
@@ -22,9 +23,14 @@ pyo3::create_exception!(
     "A run that stopped before its end; `run` has what was reached."
 );
 
-/// What cannot be done, as Python raises it.
-pub(crate) fn refused(fault: impl ToString) -> PyErr {
-    PyValueError::new_err(fault.to_string())
+/// What cannot be done, as Python raises it: a sentence, in which options of the command line become arguments.
+pub fn refused(fault: impl ToString) -> PyErr {
+    PyValueError::new_err(in_python(&fault.to_string()))
+}
+
+/// A value of JSON, whose sentences are in Python's words.
+pub(crate) fn told<'py>(py: Python<'py>, value: serde_json::Value) -> PyResult<Bound<'py, PyAny>> {
+    loaded(py, &all_in_python(value).to_string())
 }
 
 /// What stands in a text of JSON.
@@ -34,7 +40,7 @@ pub(crate) fn loaded<'py>(py: Python<'py>, json: &str) -> PyResult<Bound<'py, Py
 
 /// A run that stopped before its end, with what was reached.
 pub(crate) fn run_failed(py: Python<'_>, failure: &str, table: Table) -> PyResult<PyErr> {
-    let failed = RunFailed::new_err(format!("the run failed: {failure}"));
+    let failed = RunFailed::new_err(in_python(&format!("the run failed: {failure}")));
     failed.value(py).setattr("run", table)?;
     Ok(failed)
 }

@@ -11,8 +11,10 @@
 //! |---|---|
 //! | [`model`] | what the module's functions are |
 //! | `asked`, `given` | what they are asked and give, in Python's words |
+//! | `signal` | what an input is set to |
 //! | [`shown`] | pictures and pages that they give |
 //! | [`table`] | what they give: columns by name |
+//! | `worded` | how sentences of the command line are said in Python |
 //! | [`waiting`] | how Ctrl-C reaches what runs without Python, and how far it is |
 //!
 //! Numbers are moved into NumPy arrays, not copied. While a model runs, other Python threads do.
@@ -21,11 +23,15 @@ mod asked;
 mod given;
 pub mod model;
 pub mod shown;
+mod signal;
 pub mod table;
 pub mod waiting;
+mod worded;
 
 use bg_workbench::Program;
+pub use given::refused;
 use pyo3::prelude::*;
+pub use worded::in_python;
 
 #[doc(hidden)]
 pub use pyo3;
@@ -62,8 +68,8 @@ pub fn fill(module: &Bound<'_, PyModule>, program: impl Fn() -> Program + Send +
 /// Python's.
 pub fn classes(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
-    module.add("RunFailed", py.get_type::<given::RunFailed>())?;
-    for class in [py.get_type::<table::Table>(), py.get_type::<shown::Picture>(), py.get_type::<shown::Page>()] {
+    let classes = [py.get_type::<table::Table>(), py.get_type::<shown::Picture>(), py.get_type::<shown::Page>()];
+    for class in classes.into_iter().chain([py.get_type::<given::RunFailed>()]) {
         class.setattr("__module__", module.name()?)?;
         module.add(class.name()?.to_str()?, class)?;
     }

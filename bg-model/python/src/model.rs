@@ -4,9 +4,10 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use bg_workbench::Program;
-use bg_workbench::calls::{self, Asked, Fit, Number, Ran};
+use bg_workbench::calls::{self, Asked, Fit, Number, Ran, Refused};
 use bg_workbench::optimize;
 use bg_workbench::sweep::folder::{Folder, Kind};
 use bg_workbench::sweep::{Share, shown};
@@ -14,11 +15,11 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::asked::{Texts, Work, asked, integrated, measured, source};
-use crate::given::{about_run, array, loaded, of_parquet, refused, run_failed, table, with_heads};
+use crate::asked::{Numbers, Question, Texts, Work, asked, integrated, measured, source};
+use crate::given::{about_run, array, loaded, of_parquet, refused, run_failed, table, told, with_heads};
 use crate::shown::{Page, Picture};
 use crate::table::{Table, Values};
-use crate::waiting::interruptible;
+use crate::waiting::{Seen, interruptible};
 
 /// The functions that a module has.
 pub const FUNCTIONS: [&str; 17] = [
@@ -44,18 +45,32 @@ pub const FUNCTIONS: [&str; 17] = [
 /// A model, whose methods are the functions of its module.
 #[pyclass(frozen)]
 pub struct Model {
-    program: Box<dyn Fn() -> Program + Send + Sync>,
+    program: Arc<dyn Fn() -> Program + Send + Sync>,
 }
 
 impl Model {
     /// Of a program, which is made for each question.
     pub fn new(program: impl Fn() -> Program + Send + Sync + 'static) -> Self {
-        Self { program: Box::new(program) }
+        Self { program: Arc::new(program) }
+    }
+
+    /// Does what is asked for, as long as who waits for it says so.
+    fn done<T: Send + 'static>(
+        &self,
+        py: Python<'_>,
+        question: Question,
+        work: impl FnOnce(&Program, &Asked, &Seen) -> Result<T, Refused> + Send + 'static,
+    ) -> PyResult<T> {
+        let (program, (asked, raised)) = (Arc::clone(&self.program), question.parts());
+        let done = move |seen: &Seen| work(&program(), &Asked { interrupt: seen.interrupt(), ..asked }, seen);
+        let found = interruptible(py, done)?;
+        raised.nothing()?;
+        found.map_err(refused)
     }
 
     /// Makes a run, as far as it goes.
-    fn ran(&self, py: Python<'_>, asked: &Asked) -> PyResult<Ran> {
-        interruptible(py, |seen| calls::run(&(self.program)(), asked, &|part| seen.done(part)))?.map_err(refused)
+    fn ran(&self, py: Python<'_>, asked: Question) -> PyResult<Ran> {
+        self.done(py, asked, move |program, asked, seen| calls::run(program, asked, &|part| seen.done(part)))
     }
 }
 
@@ -80,13 +95,17 @@ impl Model {
         version
     }
 
-    /// Run the model; parameters are keyword arguments, inputs numbers or names of CSV files.
+    /// Run the model; parameters are keyword arguments.
+    ///
+    /// An input is a number, a text such as "12 kN", the path of a CSV file, a pair of arrays `(t, values)`, rows
+    /// `[[t, value], ..]` joined by straight lines, or a function of t in s. That is called several times a step, not in
+    /// order of time, and gives the same for the same t; what it raises ends the run and is raised.
     ///
     /// Gives a table with the time `t` in s every `step` s until `t_end` s, and all outputs of the scene. `set` takes
     /// parameters whose names are no Python names. `hint` is what `auto` begins with: a method's name, the
     /// `info["hint"]` of a run like this, which is the method that made most of it, or a `summary.json`.
     /// `info["inputs"]` has of each input its `unit`, whether it was given, and its `value` or the `table` that it
-    /// follows: file, CRC-32, rows, first and last row. Raises ValueError where something cannot be, RunFailed where
+    /// follows: file, CRC-32, rows, first and last row; neither of a function. Raises ValueError where something cannot be, RunFailed where
     /// the run stops before its end.
     #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, fixed_step=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
@@ -103,13 +122,13 @@ impl Model {
         fixed_step: Option<f64>,
         start: &str,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<Table> {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let mut ran = self.ran(py, &asked)?;
+        let mut ran = self.ran(py, asked)?;
         let failure = ran.failure.take();
         let table = table(py, ran)?;
         match failure {
@@ -137,8 +156,8 @@ impl Model {
         atol: Option<f64>,
         fixed_step: Option<f64>,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<(String, Bound<'py, PyDict>)> {
         if !(dt > 0.0 && dt.is_finite()) {
             return Err(PyValueError::new_err(format!("dt {dt}: must be a finite number above 0")));
@@ -147,7 +166,7 @@ impl Model {
         let t_end = asked.start.time() + dt;
         integrated(&mut asked, Some(t_end), Some(dt), method, hint, rtol, atol)?;
         asked.integration.fixed_step = fixed_step.unwrap_or(asked.integration.fixed_step);
-        let mut ran = self.ran(py, &asked)?;
+        let mut ran = self.ran(py, asked)?;
         if let Some(failure) = ran.failure.take() {
             return Err(run_failed(py, &failure, table(py, ran)?)?);
         }
@@ -168,7 +187,7 @@ impl Model {
     fn plot(
         &self,
         py: Python<'_>,
-        picture: &str,
+        picture: String,
         scene: Option<String>,
         others: Option<Vec<PathBuf>>,
         t_end: Option<f64>,
@@ -179,22 +198,25 @@ impl Model {
         atol: Option<f64>,
         start: &str,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<Picture> {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         let others = others.unwrap_or_default();
-        let svg = interruptible(py, |seen| {
-            calls::plot(&(self.program)(), &asked, picture, &others, &|part| seen.done(part))
+        let svg = self.done(py, asked, move |program, asked, seen| {
+            calls::plot(program, asked, &picture, &others, &|part| seen.done(part))
         })?;
-        Ok(Picture { svg: svg.map_err(refused)? })
+        Ok(Picture { svg })
     }
 
     /// The bond graph of a scene, with its causal strokes: a picture, which a notebook shows.
     #[pyo3(signature = (scene=None))]
-    fn graph(&self, scene: Option<&str>) -> PyResult<Picture> {
-        Ok(Picture { svg: calls::graph(&(self.program)(), scene).map_err(refused)? })
+    fn graph(&self, py: Python<'_>, scene: Option<String>) -> PyResult<Picture> {
+        let mut asked = Question::default();
+        asked.scene = scene;
+        let svg = self.done(py, asked, |program, asked, _| calls::graph(program, asked.scene.as_deref()))?;
+        Ok(Picture { svg })
     }
 
     /// Run the model and show all of it: the machine in motion, charts, energy balance, the bond graph.
@@ -215,13 +237,14 @@ impl Model {
         atol: Option<f64>,
         start: &str,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<Page> {
         let mut asked = asked(scene, set, inputs, start, parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
-        let html = interruptible(py, |seen| calls::page(&(self.program)(), &asked, &|part| seen.done(part)))?;
-        Ok(Page { html: html.map_err(refused)? })
+        let html =
+            self.done(py, asked, move |program, asked, seen| calls::page(program, asked, &|part| seen.done(part)))?;
+        Ok(Page { html })
     }
 
     /// Follow natural frequencies over a parameter, "speed=0..12000": a Campbell diagram.
@@ -235,24 +258,21 @@ impl Model {
     fn campbell<'py>(
         &self,
         py: Python<'py>,
-        by: &str,
+        by: String,
         scene: Option<String>,
         points: usize,
         orders: Option<Vec<f64>>,
         at: Option<f64>,
         start: &str,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<Bound<'py, PyDict>> {
         let asked = asked(scene, set, inputs, start, parameters)?;
-        let found = interruptible(py, |_| {
-            let program = (self.program)();
-            let found = calls::campbell(&program, &asked, by, points, orders.as_deref(), at)?;
-            let scene = asked.scene.clone().unwrap_or_default();
-            Ok::<_, calls::Refused>((found.drawn(&scene), found))
-        });
-        let (drawn, found) = found?.map_err(refused)?;
+        let (drawn, found) = self.done(py, asked, move |program, asked, seen| {
+            let found = calls::campbell(program, asked, &by, points, orders.as_deref(), at, &|part| seen.done(part))?;
+            Ok((found.drawn(asked.scene.as_deref().unwrap_or_default()), found))
+        })?;
         let all = PyDict::new(py);
         all.set_item("modes", with_heads(py, found.modes())?)?;
         all.set_item("critical_speeds", with_heads(py, found.critical_speeds())?)?;
@@ -272,11 +292,11 @@ impl Model {
         scene: Option<String>,
         at: Option<f64>,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let asked = asked(scene, set, inputs, "model", parameters)?;
-        let space = interruptible(py, |_| calls::linearize(&(self.program)(), &asked, at))?.map_err(refused)?;
+        let space = self.done(py, asked, move |program, asked, _| calls::linearize(program, asked, at))?;
         let linear = loaded(py, &space.json())?;
         for (name, matrix) in [("a", &space.a), ("b", &space.b), ("c", &space.c), ("d", &space.d)] {
             linear.set_item(name, array(py, matrix)?)?;
@@ -304,14 +324,14 @@ impl Model {
         rtol: Option<f64>,
         atol: Option<f64>,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<Table> {
         let mut asked = asked(scene, set, inputs, "model", parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         let (by, outputs) = (by.unwrap_or_default(), outputs.unwrap_or_default());
-        let found = interruptible(py, |_| calls::sensitivity(&(self.program)(), &asked, &by, &outputs))?;
-        let (ran, courses) = found.map_err(refused)?;
+        let (ran, courses) =
+            self.done(py, asked, move |program, asked, _| calls::sensitivity(program, asked, &by, &outputs))?;
         let info = about_run(py, &ran)?;
         let t = ("t".to_owned(), "s".to_owned(), Values::Real(ran.run.recording.times));
         let courses = courses.into_iter().map(|course| (course.name, course.unit, Values::Real(course.values)));
@@ -341,8 +361,8 @@ impl Model {
         rtol: Option<f64>,
         atol: Option<f64>,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<(f64, Bound<'py, PyDict>)> {
         let mut asked = asked(scene, set, inputs, "model", parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
@@ -351,7 +371,7 @@ impl Model {
         }
         let of = Number { output: of, at, is_integral: integral };
         let by = by.unwrap_or_default();
-        let found = interruptible(py, |_| calls::gradient(&(self.program)(), &asked, &of, &by))?.map_err(refused)?;
+        let found = self.done(py, asked, move |program, asked, _| calls::gradient(program, asked, &of, &by))?;
         let slopes = PyDict::new(py);
         for (name, slope) in found.by {
             slopes.set_item(name, slope)?;
@@ -377,15 +397,15 @@ impl Model {
         method: Option<&str>,
         rtol: Option<f64>,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut asked = asked(scene, set, inputs, "model", parameters)?;
         integrated(&mut asked, None, None, method, None, rtol, None)?;
         let all = |texts: Option<Texts>| texts.map(Texts::all).unwrap_or_default();
         let fit = Fit { data: measured(data)?, parameters: fit.all(), bounds: all(bounds), columns: all(columns) };
-        let found = interruptible(py, |_| calls::identify(&(self.program)(), &asked, &fit))?.map_err(refused)?;
-        loaded(py, &found.to_string())
+        let found = self.done(py, asked, move |program, asked, _| calls::identify(program, asked, &fit))?;
+        told(py, found)
     }
 
     /// Find the parameters with which a number of a run is least or largest, by exact derivatives.
@@ -415,17 +435,17 @@ impl Model {
         rtol: Option<f64>,
         atol: Option<f64>,
         inputs: Option<BTreeMap<String, Bound<'_, PyAny>>>,
-        set: Option<BTreeMap<String, f64>>,
-        parameters: Option<BTreeMap<String, f64>>,
+        set: Option<Numbers>,
+        parameters: Option<Numbers>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let mut asked = asked(scene, set, inputs, "model", parameters)?;
         integrated(&mut asked, t_end, step, method, hint, rtol, atol)?;
         let [minimize, maximize, subject, by] =
             [minimize, maximize, subject, by].map(|texts| texts.map_or_else(Vec::new, Texts::all));
         let goals = optimize::Asked { minimize, maximize, subject, by, starts, points, steps, threads };
-        let found = interruptible(py, |seen| calls::optimize(&(self.program)(), &asked, &goals, &|| seen.goes_on()))?;
-        let (sought, found) = found.map_err(refused)?;
-        let told = loaded(py, &optimize::report::json(&sought, &found).to_string())?;
+        let (sought, found) = self
+            .done(py, asked, move |program, asked, seen| calls::optimize(program, asked, &goals, &|| seen.goes_on()))?;
+        let told = told(py, optimize::report::json(&sought, &found))?;
         told.set_item("trials", of_parquet(py, optimize::report::trials(&sought, &found), PyDict::new(py))?)?;
         Ok(told)
     }
@@ -480,7 +500,8 @@ impl Model {
             || PyValueError::new_err(format!("shard {shard:?}: give (i, n), the i-th of n parts, counted from 1"));
         let share = Share::new(shard.0, shard.1).ok_or_else(none)?;
         let work = Work { plan: source(plan)?, out, share, threads };
-        let outcome = interruptible(py, |seen| work.done(&(self.program)(), seen))?.map_err(refused)?;
+        let program = Arc::clone(&self.program);
+        let outcome = interruptible(py, move |seen| work.done(&program(), seen))?.map_err(refused)?;
         let counts = PyDict::new(py);
         counts.set_item("runs", outcome.runs)?;
         counts.set_item("made", outcome.made_runs)?;
@@ -501,12 +522,12 @@ impl Model {
     #[pyo3(signature = (folder, *, trajectories=false))]
     fn read_sweep(&self, py: Python<'_>, folder: PathBuf, trajectories: bool) -> PyResult<Table> {
         let kind = if trajectories { Kind::Trajectories } else { Kind::Runs };
-        let read = || -> Result<_, String> {
+        let read = move |_: &Seen| -> Result<_, String> {
             let folder = Folder::open(&folder).map_err(|fault| fault.to_string())?;
             let table = shown::joined(&folder, kind).map_err(|fault| fault.to_string())?;
             Ok((table, folder.recipe().to_owned()))
         };
-        let (table, recipe) = py.detach(read).map_err(PyValueError::new_err)?;
+        let (table, recipe) = interruptible(py, read)?.map_err(refused)?;
         let info = PyDict::new(py);
         info.set_item("sweep", recipe)?;
         of_parquet(py, table, info)

@@ -3,10 +3,12 @@
 //! In: something to do that says from time to time how far it is, and asks whether to go on. Out: what it gives, or
 //! Python's `KeyboardInterrupt`.
 
-use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use bg_model::run::Interrupt;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -14,12 +16,14 @@ use pyo3::types::PyDict;
 const PAUSE: Duration = Duration::from_millis(50);
 /// What takes less has no bar.
 const SHORT: Duration = Duration::from_secs(1);
+/// How long an end is waited for.
+const PATIENCE: Duration = Duration::from_millis(300);
 /// The parts of a bar.
 const PARTS: f64 = 1000.0;
 
 /// Something to do, as it sees who waits for it.
 pub struct Seen {
-    goes_on: AtomicBool,
+    interrupt: Interrupt,
     /// In parts of a thousand.
     done: AtomicU32,
 }
@@ -27,7 +31,12 @@ pub struct Seen {
 impl Seen {
     /// Whether to go on.
     pub fn goes_on(&self) -> bool {
-        self.goes_on.load(Ordering::Relaxed)
+        !self.interrupt.is_set()
+    }
+
+    /// What ends the runs that are made meanwhile.
+    pub fn interrupt(&self) -> Interrupt {
+        self.interrupt.clone()
     }
 
     /// Says which part is done, 0 to 1. Whether to go on.
@@ -65,42 +74,47 @@ impl Bar {
 }
 
 /// Does `work` in another thread, without Python's lock; `work` is handed who waits. What takes long has a bar, if it says
-/// how far it is.
+/// how far it is. After Ctrl-C runs end with their step; what does not ask for so long as [`PATIENCE`] is left to itself: a
+/// text being compiled, eigenvalues. It comes to its end unseen, and what it gives is dropped.
 ///
 /// # Errors
-/// What Python's signal handlers raise meanwhile; `work` has ended then as well.
+/// What Python's signal handlers raise meanwhile.
 ///
 /// # Panics
 /// `work` panics.
-pub fn interruptible<T: Send>(py: Python<'_>, work: impl FnOnce(&Seen) -> T + Send) -> PyResult<T> {
-    let seen = Seen { goes_on: AtomicBool::new(true), done: AtomicU32::new(0) };
+pub fn interruptible<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Seen) -> T + Send + 'static) -> PyResult<T> {
+    let seen = Arc::new(Seen { interrupt: Interrupt::default(), done: AtomicU32::new(0) });
     py.detach(|| {
-        thread::scope(|scope| {
-            let (waiting, seen) = (thread::current(), &seen);
-            let worker = thread::Builder::new().stack_size(8 << 20).spawn_scoped(scope, move || {
-                let given = work(seen);
-                waiting.unpark();
-                given
-            })?;
-            let (mut interrupted, mut bar, start) = (Ok(()), None, Instant::now());
-            while !worker.is_finished() {
-                thread::park_timeout(PAUSE);
-                if interrupted.is_err() {
-                    continue;
-                }
-                let done = seen.done.load(Ordering::Relaxed);
-                interrupted = Python::attach(|py| {
-                    py.check_signals()?;
-                    if bar.is_none() && done > 0 && start.elapsed() > SHORT {
-                        bar = Some(Bar::shown(py)?);
-                    }
-                    bar.as_ref().map_or(Ok(()), |bar| bar.set(py, done))
-                });
-                seen.goes_on.store(interrupted.is_ok(), Ordering::Relaxed);
+        let (waiting, seen_by_work) = (thread::current(), Arc::clone(&seen));
+        let worker = thread::Builder::new().stack_size(8 << 20).spawn(move || {
+            let given = work(&seen_by_work);
+            waiting.unpark();
+            given
+        })?;
+        let (mut bar, start) = (None, Instant::now());
+        let interrupted = loop {
+            if worker.is_finished() {
+                break Ok(());
             }
-            let given = worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic));
-            Python::attach(|py| bar.unwrap_or_default().close(py))?;
-            interrupted.map(|()| given)
-        })
+            thread::park_timeout(PAUSE);
+            let done = seen.done.load(Ordering::Relaxed);
+            let told = Python::attach(|py| {
+                py.check_signals()?;
+                if bar.is_none() && done > 0 && start.elapsed() > SHORT {
+                    bar = Some(Bar::shown(py)?);
+                }
+                bar.as_ref().map_or(Ok(()), |bar| bar.set(py, done))
+            });
+            if told.is_err() {
+                break told;
+            }
+        };
+        seen.interrupt.interrupt();
+        let end = Instant::now();
+        while !worker.is_finished() && end.elapsed() < PATIENCE {
+            thread::park_timeout(PAUSE);
+        }
+        Python::attach(|py| bar.unwrap_or_default().close(py))?;
+        interrupted.map(|()| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })
 }

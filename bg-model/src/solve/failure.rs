@@ -146,6 +146,12 @@ pub enum Cause {
         /// When, s.
         t: f64,
     },
+    /// It was told to end ([`Request::interrupt`](crate::run::Request::interrupt)).
+    #[error("the run was interrupted at t = {t:?} s")]
+    Interrupted {
+        /// When, s.
+        t: f64,
+    },
     /// What was to be recorded could not be calculated.
     #[error(transparent)]
     NoNumber(#[from] NoNumber),

@@ -4,9 +4,10 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 
 use bg_model::bond_graph;
+use bg_model::failure::Cause;
 use bg_model::integrator::{Dop853, Integrator, Tolerances};
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::run::{RunError, Simulation, State};
+use bg_model::run::{Interrupt, Request, RunError, Simulation, State};
 use bg_model::simulation::{Ended, Part, Settings, Span, integrate};
 use bg_model::system::Model;
 
@@ -114,6 +115,33 @@ fn a_run_is_stopped_from_its_steps() {
     let run = Simulation::new(&model).every(10.0).until(50.0).each_step(stop).run().unwrap();
     assert_eq!((run.ended, run.statistics.steps), (Ended::ByObserver, 3));
     assert_eq!(run.times, [0.0, run.last.t]);
+}
+
+#[test]
+fn a_run_is_interrupted_from_outside() {
+    let interrupt = Interrupt::default();
+    let request = Request { t_end: 50.0, interrupt: interrupt.clone(), ..Request::default() };
+    let run = |mut told: Box<dyn FnMut()>| {
+        let told = move |_: f64| {
+            told();
+            ControlFlow::Continue(())
+        };
+        Simulation::of(&slide(2.0), request.clone()).each_step(told).run()
+    };
+    let mut steps = 0;
+    let ended = run(Box::new(move || {
+        steps += 1;
+        if steps == 3 {
+            interrupt.interrupt();
+        }
+    }));
+    let Err(RunError::Stopped(stopped)) = ended else { panic!("{ended:?}") };
+    let (reached, steps) = (stopped.trajectory.last.t, stopped.trajectory.statistics.steps);
+    assert!(matches!(stopped.cause, Cause::Interrupted { t } if t == reached && t < 50.0), "{stopped}");
+    assert_eq!((steps, stopped.trajectory.ended), (3, Ended::ByFailure));
+    // What begins later ends with its first step.
+    let Err(RunError::Stopped(stopped)) = run(Box::new(|| ())) else { panic!("it goes on") };
+    assert_eq!(stopped.trajectory.statistics.steps, 1);
 }
 
 #[test]

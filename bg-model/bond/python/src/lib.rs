@@ -3,15 +3,18 @@
 //! In: text in the language of `bond_graph!`, or a file that `bond` takes. Out: a model with the functions of
 //! `bg-python`; or `FaultError`, which says all faults at their places.
 
+use std::io::ErrorKind;
 use std::path::PathBuf;
 
 use bg_loaded::Fault;
 use bg_python::model::Model;
+use bg_python::waiting::interruptible;
+use bg_python::{in_python, refused};
 use bg_workbench::Program;
 use bond_graph::file::{self, Text, Wanted};
 use bond_graph::text::Points;
 use bond_graph::{faults, maker};
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -32,9 +35,12 @@ fn load(
     limit_statements: Option<usize>,
     tables: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Model> {
-    let text = py.detach(|| file::read(&path)).map_err(|fault| match fault {
+    let text = interruptible(py, move |_| file::read(&path))?.map_err(|fault| match fault {
+        file::FileFault::Unreadable { ref source, .. } if source.kind() == ErrorKind::NotFound => {
+            PyFileNotFoundError::new_err(fault.to_string())
+        }
         file::FileFault::Unreadable { .. } => PyOSError::new_err(fault.to_string()),
-        fault => PyValueError::new_err(fault.to_string()),
+        fault => refused(fault),
     })?;
     model(py, with_tables(text, tables)?, graph, limit_statements)
 }
@@ -62,7 +68,7 @@ fn with_tables(text: Text, tables: Option<&Bound<'_, PyDict>>) -> PyResult<Text>
     let Some(tables) = tables else { return Ok(text) };
     tables.iter().try_fold(text, |text, (name, given)| {
         let name: String = name.extract()?;
-        text.with_table(&name, &points(&name, &given)?).map_err(|fault| PyValueError::new_err(fault.to_string()))
+        text.with_table(&name, &points(&name, &given)?).map_err(refused)
     })
 }
 
@@ -83,17 +89,21 @@ fn points(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Points> {
 
 fn model(py: Python<'_>, text: Text, graph: Option<&str>, most: Option<usize>) -> PyResult<Model> {
     let wanted = Wanted { most, ..Wanted::default() };
-    let graphs = py.detach(|| file::graphs(&text, &wanted)).or_else(|faults| Err(fault_error(py, &text, &faults)?))?;
-    let loaded = maker::Loaded::of(graphs, graph).map_err(PyValueError::new_err)?;
+    let read = text.clone();
+    let graphs = interruptible(py, move |_| file::graphs(&read, &wanted))?
+        .or_else(|faults| Err(fault_error(py, &text, &faults)?))?;
+    let loaded = maker::Loaded::of(graphs, graph).map_err(refused)?;
     Ok(Model::new(move || Program::with(loaded.clone())))
 }
 
 /// All faults of a text as Python raises them.
 fn fault_error(py: Python<'_>, text: &Text, all: &[Fault]) -> PyResult<PyErr> {
+    let in_python = |fault: &Fault| Fault { help: in_python(&fault.help), ..fault.clone() };
+    let all: Vec<Fault> = all.iter().map(in_python).collect();
     let told: Vec<String> = all.iter().map(|fault| faults::plain(text, fault)).collect();
     let raised = FaultError::new_err(format!("\n{}", told.join("\n\n")));
     let listed = PyList::empty(py);
-    for fault in all {
+    for fault in &all {
         let Fault { code, message, help, place: [line, column], .. } = fault;
         let one = PyDict::new(py);
         one.set_item("file", faults::place(text, fault).0.display().to_string())?;

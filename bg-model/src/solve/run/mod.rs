@@ -7,6 +7,7 @@
 
 mod ending;
 mod instants;
+mod interrupt;
 mod lanes;
 mod request;
 mod state;
@@ -24,6 +25,7 @@ use ending::{Ending, of_state};
 
 pub use ending::Sample;
 pub use instants::sample_times;
+pub use interrupt::Interrupt;
 pub use lanes::{LaneError, in_lanes};
 pub use request::Request;
 pub use state::{State, StateError};
@@ -284,7 +286,8 @@ fn observer<'a, 'b, 'c>(
     another: Option<&'c mut dyn Observer>,
 ) -> Observers<'a, 'b, 'c> {
     let peaks = request.peaks.then(|| PeakMonitor::new(model, request.settled));
-    (Recorder::new(model, &request.parts), (Told { each_step, is_done: false }, (another, peaks)))
+    let told = Told { each_step, interrupt: request.interrupt.clone(), is_done: false };
+    (Recorder::new(model, &request.parts), (told, (another, peaks)))
 }
 
 /// What was recorded, with the peaks that were found.
@@ -320,6 +323,8 @@ impl Made {
         if matches!(request.samples, Samples::Every(_)) && cause.is_none() && !is_sampled {
             recorder.sample(finish.t, finish.x.as_slice(), &finish.negative);
         }
+        let is_interrupted = finish.ended == Ended::ByObserver && request.interrupt.is_set();
+        let cause = cause.or(is_interrupted.then_some(Cause::Interrupted { t: finish.t }));
         // What could not be calculated was so before anything else failed.
         let fault = recorder.fault.map(Cause::from);
         let (cause, ended) = match fault.or(cause) {
@@ -370,12 +375,13 @@ fn last(model: &dyn Machine, Finish { t, x, negative, .. }: &Finish, mut largest
 /// Hands each step on.
 struct Told<'a> {
     each_step: EachStep<'a>,
+    interrupt: Interrupt,
     is_done: bool,
 }
 
 impl Observer for Told<'_> {
     fn step(&mut self, t: f64, _t_end: f64, _statistics: &Statistics) {
-        self.is_done = (self.each_step)(t).is_break();
+        self.is_done = (self.each_step)(t).is_break() || self.interrupt.is_set();
     }
 
     fn is_done(&self) -> bool {

@@ -1,6 +1,6 @@
 //! What is asked of a run.
 
-use super::sample_times;
+use super::{Interrupt, sample_times};
 use crate::solve::integrator::{AnyMethod, Auto, Integrator, Tolerances};
 use crate::solve::simulation::{Part, Samples, Settings};
 
@@ -36,6 +36,8 @@ pub struct Request {
     pub settled: Option<f64>,
     /// The number of attempted steps, rejected ones included, after which the run gives up.
     pub step_limit: u64,
+    /// What ends it from another thread: it then fails as [`Cause::Interrupted`](crate::failure::Cause::Interrupted).
+    pub interrupt: Interrupt,
 }
 
 impl Default for Request {
@@ -53,6 +55,7 @@ impl Default for Request {
             peaks: false,
             settled: None,
             step_limit: Settings::default().step_limit,
+            interrupt: Interrupt::default(),
         }
     }
 }

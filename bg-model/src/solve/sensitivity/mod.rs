@@ -217,6 +217,12 @@ pub enum SensitivityError {
         /// The model.
         model: &'static str,
     },
+    /// It was told to end ([`Request::interrupt`]) while it followed the run backwards.
+    #[error("interrupted where the run was followed back to t = {t:?} s")]
+    Interrupted {
+        /// When, s.
+        t: f64,
+    },
     /// The derivatives change so fast that too many steps would be needed.
     #[error(
         "the derivatives change too fast from t = {t:?} s on: the model is too stiff for them, or they are not finite"

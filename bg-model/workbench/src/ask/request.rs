@@ -103,6 +103,14 @@ pub enum RequestFault {
 }
 
 impl Integration {
+    /// What is asked of a run from 0 on of which only its end counts, at `t` (s).
+    ///
+    /// # Errors
+    /// As [`Integration::request`].
+    pub fn request_to(&self, t: f64) -> Result<Request, RequestError> {
+        Self { t_end: t, step: t, ..self.clone() }.request(0.0, None)
+    }
+
     /// What is asked of a run from `t0` (s) on: samples at the rows of the CSV file; where `finest` (s) is given, also
     /// at that interval, and the peaks of the outputs.
     ///

@@ -16,7 +16,7 @@ use super::sensitivity::SensitivityArguments;
 use super::sweep::SweepArguments;
 use crate::ask::hint;
 use crate::ask::request::Integration;
-use crate::ask::request::T_END;
+use crate::ask::request::{RequestError, T_END};
 use crate::show::picture::Level;
 use crate::show::tables::Part;
 use crate::show::trajectory::Form;
@@ -226,12 +226,6 @@ pub struct IntegrationArguments {
 }
 
 impl IntegrationArguments {
-    /// Those of a run to `t` (s), whose end alone is asked for.
-    pub fn to(t: f64, method: Integrator, rtol: f64) -> Self {
-        let fixed_step = Request::default().fixed_step;
-        Self { t_end: t, method, hint: None, fixed_step, rtol, atol: None, step: t }
-    }
-
     /// The same, not yet checked.
     pub const fn integration(&self) -> Integration {
         let &Self { t_end, method, hint, fixed_step, rtol, atol, step } = self;
@@ -401,16 +395,9 @@ pub struct LinearizeArguments {
 }
 
 impl LinearizeArguments {
-    /// Those of a scene, told nothing else.
-    pub fn of_scene(scene: &str) -> Self {
-        let model = ModelArguments { scene: scene.to_owned(), set: Vec::new(), params: None, input: Vec::new() };
-        let Request { method, rtol, .. } = Request::default();
-        Self { model, at: None, method, rtol, json: false, out: PathBuf::new() }
-    }
-
-    /// How the run to `t` (s) is made.
-    pub fn integration(&self, t: f64) -> IntegrationArguments {
-        IntegrationArguments::to(t, self.method, self.rtol)
+    /// What is asked of the run to `t` (s).
+    pub fn request(&self, t: f64) -> Result<Request, RequestError> {
+        Integration { method: self.method, rtol: self.rtol, ..Integration::default() }.request_to(t)
     }
 }
 

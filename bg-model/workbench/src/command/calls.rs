@@ -6,27 +6,26 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use bg_model::description::ParameterInfo;
-use bg_model::run::Trajectory;
+use bg_model::description::{InputInfo, ParameterInfo};
+use bg_model::run::{Interrupt, Request, Trajectory};
 use bg_model::sensitivity::Objective;
 use bg_model::simulation::Recording;
 use thiserror::Error;
 
-use super::arguments::LinearizeArguments;
 use super::gradient::only;
-use super::linearize::{check_time, space as linearised};
+use super::linearize::{check_time, linearised};
 use super::sensitivity::{adjustable, derivatives};
 use super::{campbell, identify, plot};
-use crate::ask::inputs::{self, Named};
+use crate::ask::inputs::{self, Named, Setting};
 use crate::ask::parameters::{self, Chosen, number};
-use crate::ask::request::Integration;
+use crate::ask::request::{Integration, RequestError};
 use crate::ask::scenes::{Scene, own_values};
 use crate::live::{Order, whole_report};
 use crate::program::Program;
 use crate::run::running::{follow, going_on, part_done};
 use crate::show::picture;
 use crate::show::signals::Drawing;
-use crate::studies::identify::data::read;
+use crate::studies::identify::data::{of_columns, read_file};
 use crate::studies::identify::report;
 use crate::studies::optimize::{self, Optimum, Sought, Trial};
 use crate::studies::sensitivity::Course;
@@ -49,10 +48,26 @@ pub struct Asked {
     pub set: BTreeMap<String, f64>,
     /// Inputs as `NAME=VALUE` or `NAME=FILE.csv`.
     pub inputs: Vec<String>,
+    /// Inputs that are set to tables or functions of who asks.
+    pub signals: BTreeMap<String, Setting>,
     /// How it is integrated.
     pub integration: Integration,
     /// Where it begins.
     pub start: Begin,
+    /// What ends all runs that are made for it.
+    pub interrupt: Interrupt,
+}
+
+impl Asked {
+    /// What is asked of a run from `t0` (s) on.
+    fn request(&self, t0: f64) -> Result<Request, RequestError> {
+        Ok(Request { interrupt: self.interrupt.clone(), ..self.integration.request(t0, None)? })
+    }
+
+    /// What is asked of a run whose end, at `t` (s), is all that counts.
+    fn to(&self, t: f64) -> Result<Request, RequestError> {
+        Ok(Request { interrupt: self.interrupt.clone(), ..self.integration.request_to(t)? })
+    }
 }
 
 /// A run that was made.
@@ -115,7 +130,7 @@ pub fn outputs(program: &Program, scene: Option<&str>) -> Result<Vec<(String, St
 /// # Errors
 /// It cannot be made.
 pub fn run(program: &Program, asked: &Asked, told: Told<'_>) -> Result<Ran, Refused> {
-    let request = asked.integration.request(asked.start.time(), None).map_err(refused)?;
+    let request = asked.request(asked.start.time()).map_err(refused)?;
     let Given { scene, chosen, inputs } = given(program, asked)?;
     let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
     let from = asked.start.state(&*machine).map_err(refused)?;
@@ -130,7 +145,10 @@ pub fn run(program: &Program, asked: &Asked, told: Told<'_>) -> Result<Ran, Refu
 /// There is none.
 pub fn linearize(program: &Program, asked: &Asked, at: Option<f64>) -> Result<StateSpace, Refused> {
     let Given { scene, chosen, .. } = given(program, asked)?;
-    linearised(program, scene, &chosen, at).map_err(Refused)
+    check_time("at", at).map_err(refused)?;
+    let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
+    let (space, _) = linearised(&*machine, at, &|t| asked.to(t)).map_err(refused)?;
+    Ok(space)
 }
 
 /// A run to its end, with the derivatives of the outputs `of` by the parameters `by` over it; without names of all
@@ -144,7 +162,7 @@ pub fn sensitivity(
     by: &[String],
     of: &[String],
 ) -> Result<(Ran, Vec<Course>), Refused> {
-    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let request = asked.request(0.0).map_err(refused)?;
     let Given { scene, chosen, inputs } = given(program, asked)?;
     let (run, courses) = derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)?;
     Ok((Ran { run, failure: None, inputs }, courses))
@@ -176,7 +194,7 @@ pub struct Gradient {
 /// # Errors
 /// It cannot be made, or has no derivatives.
 pub fn gradient(program: &Program, asked: &Asked, of: &Number, by: &[String]) -> Result<Gradient, Refused> {
-    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let request = asked.request(0.0).map_err(refused)?;
     let Given { scene, chosen, .. } = given(program, asked)?;
     let (output, _) = only(scene, &of.output).map_err(refused)?;
     check_time("at", of.at).map_err(refused)?;
@@ -193,11 +211,20 @@ pub fn gradient(program: &Program, asked: &Asked, of: &Number, by: &[String]) ->
     Ok(Gradient { value: found.value, by: by.into_iter().zip(found.by).collect() })
 }
 
+/// What was measured: `t`, in s, and what is named as outputs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Measurement {
+    /// In a CSV file, whose first column is `t`.
+    File(PathBuf),
+    /// In columns by name.
+    Columns(Vec<(String, Vec<f64>)>),
+}
+
 /// What is fitted to what.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// What was measured: the text of a CSV file, the first column `t`, in s, the others named as outputs.
-    pub data: String,
+    /// What was measured.
+    pub data: Measurement,
     /// The parameters.
     pub parameters: Vec<String>,
     /// Their bounds, `NAME=LOWER..UPPER`, where they are narrower than their ranges.
@@ -215,10 +242,14 @@ pub fn identify(program: &Program, asked: &Asked, fit: &Fit) -> Result<serde_jso
     let variables = identify::variables(scene, &chosen, &fit.parameters, &fit.bounds).map_err(refused)?;
     let named = identify::columns(scene, &fit.columns).map_err(refused)?;
     let outputs = scene.description.outputs;
-    let data = read(fit.data.as_bytes(), outputs, &named, &[]).map_err(refused)?;
+    let data = match &fit.data {
+        Measurement::File(path) => read_file(path, outputs, &named, &[]).map_err(refused)?,
+        Measurement::Columns(columns) => {
+            of_columns(columns, outputs, &named, &[]).map_err(|fault| refused(format!("data: {fault}")))?
+        }
+    };
     let t_end = data.times.last().copied().unwrap_or_default();
-    let integration = Integration { t_end, step: t_end, ..asked.integration.clone() };
-    let request = integration.request(0.0, None).map_err(refused)?;
+    let request = asked.to(t_end).map_err(refused)?;
     let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
     let found = machine.identified(&request, &data, &variables, &mut |_, _| ());
     let found = machine.known("derivatives by parameters", found).map_err(refused)?.map_err(refused)?;
@@ -242,7 +273,7 @@ pub fn page(program: &Program, asked: &Asked, told: Told<'_>) -> Result<String, 
     let order = Order {
         scene: scene.name.clone(),
         parameters: asked.set.clone(),
-        inputs: inputs::settings(&asked.inputs, program.models.graph().description.inputs).map_err(refused)?,
+        inputs: settings(asked, program.models.graph().description.inputs)?,
         integration: asked.integration.clone(),
         begin: asked.start.clone(),
     };
@@ -259,7 +290,7 @@ pub fn optimize(
     goals: &optimize::Asked,
     told: &(dyn Fn() -> bool + Sync),
 ) -> Result<(Sought, Optimum), Refused> {
-    let request = asked.integration.request(0.0, None).map_err(refused)?;
+    let request = asked.request(0.0).map_err(refused)?;
     let Given { scene, chosen, .. } = given(program, asked)?;
     let sought = optimize::sought(scene, &chosen.values, goals, &request, asked.integration.step).map_err(refused)?;
     let each = |_: usize, _: &Trial| told();
@@ -268,7 +299,8 @@ pub fn optimize(
 }
 
 /// The modes over a parameter, `NAME=FROM..TO`, at so many values: about the model's start or its equilibrium, or where
-/// its run is at `at`, s. Orders are those that are given, else 1 and 2 of a speed.
+/// its run is at `at`, s. Orders are those that are given, else 1 and 2 of a speed. `told` is asked after each value, with
+/// the part that is done, whether to go on.
 ///
 /// # Errors
 /// It cannot be asked for, or no value has a linear model.
@@ -279,13 +311,15 @@ pub fn campbell(
     points: usize,
     orders: Option<&[f64]>,
     at: Option<f64>,
+    told: Told<'_>,
 ) -> Result<Campbell, Refused> {
     check_time("at", at).map_err(refused)?;
     let Given { scene, chosen, .. } = given(program, asked)?;
     let what = campbell::asked(scene, by, points.max(2), orders, None).map_err(refused)?;
     let place = at.or((asked.start == Begin::Model).then_some(0.0));
-    let integration = |t| LinearizeArguments::of_scene(&scene.name).integration(t);
-    campbell::followed(program, scene, &chosen, what, (place, &integration), &|| ()).map_err(refused)
+    let all = what.points as f64;
+    let each = |done: usize| told((done as f64 / all).min(1.0));
+    campbell::followed(program, scene, &chosen, what, (place, &|t| asked.to(t)), &each).map_err(refused)
 }
 
 /// A picture of a run: `v over x`, `spectrum of x`, `orders of x over angle`, or a signal over time; other runs and
@@ -341,7 +375,16 @@ fn given<'a>(program: &'a Program, asked: &Asked) -> Result<Given<'a>, Refused> 
     for (name, &value) in &asked.set {
         parameters::set(&mut chosen, &format!("{name}={}", number(value)), name, value).map_err(refused)?;
     }
-    let (values, inputs) = inputs::chosen_and_named(&asked.inputs, graph.inputs).map_err(refused)?;
-    chosen.inputs = values;
-    Ok(Given { scene, chosen, inputs })
+    let settings = settings(asked, graph.inputs)?;
+    chosen.inputs = inputs::made(&settings);
+    Ok(Given { scene, chosen, inputs: inputs::named(&settings, graph.inputs) })
+}
+
+/// What the inputs are set to.
+fn settings(asked: &Asked, infos: &[InputInfo]) -> Result<Vec<Setting>, Refused> {
+    let mut settings = inputs::settings(&asked.inputs, infos).map_err(refused)?;
+    for (name, setting) in &asked.signals {
+        inputs::set(&mut settings, (name, setting), infos).map_err(refused)?;
+    }
+    Ok(settings)
 }

@@ -1,13 +1,14 @@
 //! The command `campbell`: natural frequencies over a parameter as a figure, tables and a text.
 
+use std::cell::Cell;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
 use serde_json::json;
 
-use super::arguments::{IntegrationArguments, ModelArguments, Start};
-use super::linearize::{check_time, linearised};
+use super::arguments::{ModelArguments, Start};
+use super::linearize::{To, check_time, linearised};
 use super::methods::integrator;
 use super::progress::bar;
 use super::run::chosen;
@@ -15,6 +16,7 @@ use super::sensitivity::unknown;
 use super::{InputError, ended};
 use crate::ask::inputs;
 use crate::ask::parameters::{Chosen, bounds, number};
+use crate::ask::request::{Integration, RequestError};
 use crate::ask::scenes::Scene;
 use crate::files::json::rows;
 use crate::files::{FileError, RunFolder, console};
@@ -118,26 +120,34 @@ pub fn asked(
     Ok(Asked { by: info, range, points, orders, up_to })
 }
 
-/// The modes over the parameter: of models that are linearised at `place`, a time (s) or the equilibrium, as
-/// `integration` runs them there. `told` is told of each.
+/// The modes over the parameter: of models that are linearised at `place`, a time (s) or the equilibrium; runs there are
+/// made as `to` says. `told` is told after each model how many there were, and says whether to go on.
 pub fn followed(
     program: &Program,
     scene: &Scene,
     chosen: &Chosen,
     asked: Asked,
-    (place, integration): (Option<f64>, &dyn Fn(f64) -> IntegrationArguments),
-    told: &dyn Fn(),
+    (place, to): (Option<f64>, To<'_>),
+    told: &dyn Fn(usize) -> bool,
 ) -> Result<Campbell, InputError> {
     let name = asked.by.name;
+    let (done, goes_on) = (Cell::new(0), Cell::new(true));
     let modes = |value: f64| -> Result<Vec<Mode>, String> {
+        if !goes_on.get() {
+            return Err(InputError::Interrupted.to_string());
+        }
         let mut values = chosen.values.clone();
         values.set(name, value).map_err(|fault| fault.to_string())?;
         let machine = program.models.made(scene, &values, &chosen.inputs).map_err(|fault| fault.to_string())?;
-        let found = linearised(&*machine, place, integration);
-        told();
+        let found = linearised(&*machine, place, to);
+        done.set(done.get() + 1);
+        goes_on.set(told(done.get()));
         Ok(found.map_err(|fault| fault.to_string())?.0.modes)
     };
     let found = follow(asked, modes);
+    if !goes_on.get() {
+        return Err(InputError::Interrupted);
+    }
     match found.failure() {
         Some(why) => {
             let value = number(found.failed[0].0);
@@ -158,9 +168,9 @@ impl CampbellArguments {
         }
     }
 
-    /// How the run to `t` (s) is made.
-    fn integration(&self, t: f64) -> IntegrationArguments {
-        IntegrationArguments::to(t, self.method, self.rtol)
+    /// What is asked of the run to `t` (s).
+    fn request(&self, t: f64) -> Result<Request, RequestError> {
+        Integration { method: self.method, rtol: self.rtol, ..Integration::default() }.request_to(t)
     }
 }
 
@@ -172,9 +182,11 @@ pub fn campbell(program: &Program, arguments: &CampbellArguments) -> Result<Exit
     let asked = asked(scene, by, *points as usize, orders.as_deref(), *up_to)?;
     let folder = RunFolder::claim(&arguments.out, &[SVG, CSV, CRITICALS, TEXT].map(str::to_owned))?;
     let bar = bar(u64::from(*points), "linearised at {pos} of {len} values");
-    let integration = |t| arguments.integration(t);
-    let where_and_how = (arguments.place(), &integration as &dyn Fn(f64) -> IntegrationArguments);
-    let found = followed(program, scene, &chosen, asked, where_and_how, &|| bar.inc(1));
+    let told = |_| {
+        bar.inc(1);
+        true
+    };
+    let found = followed(program, scene, &chosen, asked, (arguments.place(), &|t| arguments.request(t)), &told);
     bar.finish_and_clear();
     let found = found?;
     let inputs = inputs::text(&named, [0.0, arguments.place().unwrap_or(0.0)]);

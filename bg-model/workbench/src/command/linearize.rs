@@ -4,12 +4,12 @@ use std::process::ExitCode;
 
 use bg_model::run::{Request, State};
 
-use super::arguments::{IntegrationArguments, LinearizeArguments};
-use super::run::{chosen, follow, machine, request};
+use super::arguments::LinearizeArguments;
+use super::run::{chosen, follow, machine};
 use super::{InputError, ended};
 use crate::ask::inputs;
 use crate::ask::machine::Machine;
-use crate::ask::parameters::Chosen;
+use crate::ask::request::RequestError;
 use crate::ask::scenes::Scene;
 use crate::files::{FileError, RunFolder, console};
 use crate::program::Program;
@@ -36,7 +36,8 @@ pub fn linearize(program: &Program, arguments: &LinearizeArguments) -> Result<Ex
     let (chosen, named) = chosen(program, &arguments.model)?;
     let scene = program.scene_called(&arguments.model.scene);
     let folder = RunFolder::claim(&arguments.out, &names(scene))?;
-    let (space, sentence) = here(program, scene, &chosen, arguments)?;
+    let machine = machine(program, scene, &chosen)?;
+    let (space, sentence) = linearised(&*machine, arguments.at, &|t| arguments.request(t))?;
     let inputs = inputs::text(&named, [0.0, arguments.at.unwrap_or(0.0)]);
     let text = format!("{sentence}\n{}{inputs}", space.table());
     let (written, faults) = write(folder, &space, &text);
@@ -45,14 +46,6 @@ pub fn linearize(program: &Program, arguments: &LinearizeArguments) -> Result<Ex
     let json = || serde_json::from_str(&space.json()).expect("a linear model is JSON");
     let printed = console::tell_as(arguments.json, &format!("{text}\nwritten: {written}\n"), json);
     Ok(ended(faults.into_iter().chain(printed.err().map(OutputError::from))))
-}
-
-/// The linear model of a scene at `at`, s, or without it at the equilibrium near the start; or the sentence why there
-/// is none.
-pub fn space(program: &Program, scene: &Scene, chosen: &Chosen, at: Option<f64>) -> Result<StateSpace, String> {
-    let arguments = LinearizeArguments { at, ..LinearizeArguments::of_scene(&scene.name) };
-    let space = check_time("at", at).and_then(|()| here(program, scene, chosen, &arguments));
-    space.map(|(space, _)| space).map_err(|fault| fault.to_string())
 }
 
 /// Refuses a time that no run reaches.
@@ -78,38 +71,26 @@ fn diagram(input: &str, output: &str) -> String {
     format!("bode_{output}_over_{input}.svg")
 }
 
-/// Linearises a scene where the arguments say.
-fn here(
-    program: &Program,
-    scene: &Scene,
-    chosen: &Chosen,
-    arguments: &LinearizeArguments,
-) -> Result<(StateSpace, String), InputError> {
-    linearised(&*machine(program, scene, chosen)?, arguments.at, |t| arguments.integration(t))
-}
+/// What is asked of a run to an instant, s.
+pub type To<'a> = &'a dyn Fn(f64) -> Result<Request, RequestError>;
 
 /// The linear model at `at`, s, and a sentence on where that is; without `at` it is the equilibrium near the start. A
-/// run to `t` (s) is made as `integration` says.
-pub fn linearised(
-    machine: &dyn Machine,
-    at: Option<f64>,
-    integration: impl Fn(f64) -> IntegrationArguments,
-) -> Result<(StateSpace, String), InputError> {
+/// run to `at` is made as `to` says.
+pub fn linearised(machine: &dyn Machine, at: Option<f64>, to: To<'_>) -> Result<(StateSpace, String), InputError> {
     let Some(t) = at else {
         let (state, rest) = at_rest(machine)?;
         return Ok((machine.known(LINEAR, machine.linearised(&state))??, rest.sentence()));
     };
-    let state = state_at(machine, t, &integration(t))?;
+    let state = state_at(machine, t, to)?;
     Ok((machine.known(LINEAR, machine.linearised(&state))??, format!("where the run is at t = {t:?} s")))
 }
 
 /// The state that a run reaches at `t` (s).
-fn state_at(machine: &dyn Machine, t: f64, integration: &IntegrationArguments) -> Result<State, InputError> {
+fn state_at(machine: &dyn Machine, t: f64, to: To<'_>) -> Result<State, InputError> {
     if t == 0.0 {
         return Ok(machine.start(None)?);
     }
-    let request = Request { t_end: t, ..request(integration, 0.0, None)? };
-    let outcome = follow(machine, request, None)?;
+    let outcome = follow(machine, to(t)?, None)?;
     match outcome.failure {
         None => Ok(outcome.run.last),
         Some(failure) => Err(InputError::NotReached { t, failure }),

@@ -69,6 +69,8 @@ use fmu::LibraryError;
 /// Input that cannot be used.
 #[derive(Debug, Error)]
 enum InputError {
+    #[error("interrupted")]
+    Interrupted,
     #[error(transparent)]
     Again(#[from] AgainError),
     #[error(transparent)]

@@ -8,7 +8,7 @@ use super::arguments::{IntegrationArguments, ReportArguments};
 use super::linearize::{check_time, linearised};
 use super::run::simulate;
 use crate::ask::machine::Machine;
-use crate::live::Module;
+use crate::live::{Module, ModuleError};
 use crate::program::Program;
 use crate::show::page::Linearised;
 use crate::show::page::film::Film;
@@ -37,6 +37,9 @@ pub fn report(program: &Program, arguments: &ReportArguments) -> Result<ExitCode
     let files = PageFiles { page: format!("{name}.html"), figures: false, glb };
     let drawings = show.iter().map(|path| drawing(path)).collect::<Result<_, _>>()?;
     check_time("--modes", modes.flatten())?;
+    if live.is_some() && program.texts.file.is_some() {
+        return Err(ModuleError::Text.into());
+    }
     let integration = run.integration.clone();
     let module = live.as_ref().map(|file| Module::from(file.clone()));
     let look = Look { files, drawings, modes: *modes, picture: picture.clone(), integration, module };
@@ -67,8 +70,7 @@ impl Look {
     }
 
     fn linearised(&self, machine: &dyn Machine, at: Option<f64>) -> Result<Linearised, InputError> {
-        let to = |t: f64| IntegrationArguments { t_end: t, step: t, ..self.integration.clone() };
-        let (space, place) = linearised(machine, at, to)?;
+        let (space, place) = linearised(machine, at, &|t| self.integration.integration().request_to(t))?;
         let x: Vec<f64> = space.point.iter().map(|state| state.value).collect();
         let rest = Film::still(machine, space.t, &x).animation();
         Ok(Linearised { modes: space.modes, place, rest })

@@ -161,7 +161,7 @@ pub fn unknown(
     names: impl Iterator<Item = &'static str>,
 ) -> InputError {
     let near = nearest(name, names).map_or_else(
-        || format!("; the command `scene {scene}` lists them"),
+        || format!("; the command `scene {scene}` lists the {kind}s"),
         |near| format!("; did you mean `{near}`?"),
     );
     InputError::Unknown { option, fault: format!("scene `{scene}` has no {kind} `{name}` to be asked for{near}") }

@@ -103,7 +103,7 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
             let draws = outcome.is_last || !drawn::is_there(&folder) && folder.is_complete(outcome.shards);
             let told = if draws { drawn::write(program, &folder)? } else { String::new() };
             let page = if draws { format!("; open {} there", drawn::PAGE) } else { String::new() };
-            let told = format!("{told}{}{page}\n", sentence(&outcome, &folder, &plan));
+            let told = format!("{told}{}{page}\n", sentence(program, &outcome, &folder, &plan));
             Ok(ended(console::tell_as(*json, &told, || json_of(&outcome, &folder)).err()))
         }
         // What could be made is there.
@@ -128,7 +128,7 @@ fn statistics(folder: &Folder) -> serde_json::Value {
 }
 
 /// What was done, and how to look at it.
-fn sentence(outcome: &Outcome, folder: &Folder, plan: &Plan) -> String {
+fn sentence(program: &Program, outcome: &Outcome, folder: &Folder, plan: &Plan) -> String {
     let Outcome { runs, shards, own, found, made, made_runs, failed, .. } = *outcome;
     let part = if own == shards { String::new() } else { format!("{own} of its {shards} files are of this part; ") };
     let before = if found == 0 { String::new() } else { format!(", {found} were there") };
@@ -138,8 +138,9 @@ fn sentence(outcome: &Outcome, folder: &Folder, plan: &Plan) -> String {
         String::new()
     };
     let place = folder.path().display();
+    let of = program.texts.file.as_ref().map_or_else(String::new, |file| format!("{file} "));
     format!(
         "sweep of {runs} runs: {part}{made} files made{before}; {made_runs} runs, {failed} of them failed\n\
-         {samples}written: {place}; `sweep show {place}` says what is there, with --csv FILE as a table",
+         {samples}written: {place}; `sweep {of}show {place}` says what is there, with --csv FILE as a table",
     )
 }

@@ -35,6 +35,9 @@ pub enum Module {
 /// A module that there is none of.
 #[derive(Debug, Error)]
 pub enum ModuleError {
+    /// The model is that of a text, which is no program.
+    #[error("a text has no program of its own; write it into the page that `bond serve` opens, which has sliders")]
+    Text,
     /// The target is missing.
     #[error("the target {TARGET} is not installed; rustup target add {TARGET}")]
     Target,

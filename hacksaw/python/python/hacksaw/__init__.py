@@ -35,6 +35,10 @@ from ._hacksaw import (
     sweep_shards,
 )
 
+# What messages, `help` and pickle call them.
+for _class in (Page, Picture, RunFailed, Table):
+    _class.__module__ = __name__
+
 __all__ = [
     "Page",
     "Picture",

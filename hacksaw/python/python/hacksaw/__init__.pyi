@@ -1,11 +1,15 @@
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, TypedDict
+from typing import Any, TypeAlias, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 __version__: str
+
+Input: TypeAlias = float | str | PathLike[str] | tuple[npt.ArrayLike, npt.ArrayLike] | npt.ArrayLike | Callable[[float], float]
+"""What an input is set to: a number, a text such as ``"12 kN"``, the path of a CSV file, a pair of arrays ``(t, values)``, rows
+``[[t, value], ..]``, or a function of t in s, which is called several times a step and gives the same for the same t."""
 
 class RunFailed(ValueError):
     """A run that stopped before its end."""
@@ -74,7 +78,7 @@ def run(
     atol: float | None = None,
     fixed_step: float | None = None,
     start: str = "model",
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> Table:
@@ -91,7 +95,7 @@ def step(
     rtol: float | None = None,
     atol: float | None = None,
     fixed_step: float | None = None,
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> tuple[str, dict[str, float]]:
@@ -110,7 +114,7 @@ def plot(
     rtol: float | None = None,
     atol: float | None = None,
     start: str = "model",
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> Picture:
@@ -129,7 +133,7 @@ def report(
     rtol: float | None = None,
     atol: float | None = None,
     start: str = "model",
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> Page:
@@ -139,7 +143,7 @@ def linearize(
     scene: str | None = None,
     *,
     at: float | None = None,
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> dict[str, Any]:
@@ -153,7 +157,7 @@ def campbell(
     orders: Sequence[float] | None = None,
     at: float | None = None,
     start: str = "model",
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> dict[str, Any]:
@@ -170,7 +174,7 @@ def sensitivity(
     hint: str | PathLike[str] | None = None,
     rtol: float | None = None,
     atol: float | None = None,
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> Table:
@@ -189,7 +193,7 @@ def gradient(
     hint: str | PathLike[str] | None = None,
     rtol: float | None = None,
     atol: float | None = None,
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> tuple[float, dict[str, float]]:
@@ -204,7 +208,7 @@ def identify(
     columns: str | Sequence[str] | None = None,
     method: str | None = None,
     rtol: float | None = None,
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> dict[str, Any]:
@@ -227,7 +231,7 @@ def optimize(
     hint: str | PathLike[str] | None = None,
     rtol: float | None = None,
     atol: float | None = None,
-    inputs: Mapping[str, float | str] | None = None,
+    inputs: Mapping[str, Input] | None = None,
     set: Mapping[str, float] | None = None,
     **parameters: float,
 ) -> dict[str, Any]:

@@ -21,4 +21,8 @@ each at its place; what cannot be raises ``ValueError`` with a sentence, a run t
 
 from ._bond_graph import FaultError, Model, Page, Picture, RunFailed, Table, __version__, compile, load
 
+# What messages, `help` and pickle call them.
+for _class in (FaultError, Model, Page, Picture, RunFailed, Table):
+    _class.__module__ = __name__
+
 __all__ = ["FaultError", "Model", "Page", "Picture", "RunFailed", "Table", "__version__", "compile", "load"]

@@ -1,11 +1,15 @@
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, TypedDict
+from typing import Any, TypeAlias, TypedDict
 
 import numpy as np
 import numpy.typing as npt
 
 __version__: str
+
+Input: TypeAlias = float | str | PathLike[str] | tuple[npt.ArrayLike, npt.ArrayLike] | npt.ArrayLike | Callable[[float], float]
+"""What an input is set to: a number, a text such as ``"12 kN"``, the path of a CSV file, a pair of arrays ``(t, values)``, rows
+``[[t, value], ..]``, or a function of t in s, which is called several times a step and gives the same for the same t."""
 
 class FaultError(ValueError):
     """Faults of a text, each shown at its place."""
@@ -87,7 +91,7 @@ class Model:
         atol: float | None = None,
         fixed_step: float | None = None,
         start: str = "model",
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> Table:
@@ -105,7 +109,7 @@ class Model:
         rtol: float | None = None,
         atol: float | None = None,
         fixed_step: float | None = None,
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> tuple[str, dict[str, float]]:
@@ -125,7 +129,7 @@ class Model:
         rtol: float | None = None,
         atol: float | None = None,
         start: str = "model",
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> Picture:
@@ -145,7 +149,7 @@ class Model:
         rtol: float | None = None,
         atol: float | None = None,
         start: str = "model",
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> Page:
@@ -156,7 +160,7 @@ class Model:
         scene: str | None = None,
         *,
         at: float | None = None,
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> dict[str, Any]:
@@ -171,7 +175,7 @@ class Model:
         orders: Sequence[float] | None = None,
         at: float | None = None,
         start: str = "model",
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> dict[str, Any]:
@@ -189,7 +193,7 @@ class Model:
         hint: str | PathLike[str] | None = None,
         rtol: float | None = None,
         atol: float | None = None,
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> Table:
@@ -209,7 +213,7 @@ class Model:
         hint: str | PathLike[str] | None = None,
         rtol: float | None = None,
         atol: float | None = None,
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> tuple[float, dict[str, float]]:
@@ -225,7 +229,7 @@ class Model:
         columns: str | Sequence[str] | None = None,
         method: str | None = None,
         rtol: float | None = None,
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> dict[str, Any]:
@@ -249,7 +253,7 @@ class Model:
         hint: str | PathLike[str] | None = None,
         rtol: float | None = None,
         atol: float | None = None,
-        inputs: Mapping[str, float | str] | None = None,
+        inputs: Mapping[str, Input] | None = None,
         set: Mapping[str, float] | None = None,
         **parameters: float,
     ) -> dict[str, Any]:

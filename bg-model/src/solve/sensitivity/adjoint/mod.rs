@@ -18,7 +18,7 @@ use crate::model::description::Description;
 use crate::model::dynamics::Machine;
 use crate::model::mechanism::Reversible;
 use crate::solve::integrator::Scale;
-use crate::solve::run::{Request, Trajectory, observed};
+use crate::solve::run::{Interrupt, Request, Trajectory, observed};
 use crate::solve::simulation;
 use back::{Back, Crossing, add, dot};
 use event::back_over;
@@ -127,7 +127,7 @@ pub fn gradient_within(
     let scale = record.scale.clone().unwrap_or_else(|| Scale::new(&request.tolerances(), machine.states()));
     let back = Back::new((&*machine, &*sweeps, lifted), scale, &objective.integrals);
     let weights = vec![0.0; machine.states()];
-    let mut backwards = Backwards { back, record: &record, model: &*machine, weights };
+    let mut backwards = Backwards { back, record: &record, model: &*machine, weights, interrupt: &request.interrupt };
     backwards.back_to_start()?;
     backwards.by_parameters(directions)?;
     let (integral, by) = (backwards.back.integral, backwards.back.lifted.by);
@@ -176,6 +176,7 @@ struct Backwards<'a> {
     back: Back<'a>,
     /// How the objective depends on the state where this has come to.
     weights: Vec<f64>,
+    interrupt: &'a Interrupt,
 }
 
 impl Backwards<'_> {
@@ -187,6 +188,9 @@ impl Backwards<'_> {
             let first = kept * stride;
             let starts = self.again(first..steps.len().min(first + stride), state)?;
             for (number, x) in starts.iter().enumerate().rev().map(|(k, x)| (first + k, x)) {
+                if self.interrupt.is_set() {
+                    return Err(SensitivityError::Interrupted { t: self.record.steps[number].to });
+                }
                 let mut inside = vec![0.0; x.len()];
                 loop {
                     let sample = last_after(samples, number, |sample| sample.steps);

@@ -18,7 +18,7 @@ pub struct Named {
     pub unit: &'static str,
     /// Whether it was given; else it is 0.
     pub is_given: bool,
-    /// Its value, where that is the same at all times.
+    /// Its value, where that is the same at all times. It has neither this nor a table where a function gives it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub value: Option<f64>,
     /// The table that it follows.
@@ -53,6 +53,7 @@ fn one(setting: &Setting, info: &InputInfo) -> Named {
     let (value, table) = match setting {
         Setting::NotGiven => (Some(0.0), None),
         Setting::Constant(value) => (Some(*value), None),
+        Setting::Function(_) => (None, None),
         Setting::Table { times, values, cubic, source } => (None, table(times, values, *cubic, source.as_ref())),
     };
     Named { name: info.name, unit: info.unit, is_given: *setting != Setting::NotGiven, value, table }
@@ -90,11 +91,12 @@ pub fn text(inputs: &[Named], span: [f64; 2]) -> String {
 impl Named {
     /// What it is set to; nothing where it was not given.
     fn sentence(&self) -> Option<String> {
-        let what = match &self.table {
-            None => self.quantity(self.value?),
-            Some(table) => table.sentence(),
+        let what = || match (&self.table, self.value) {
+            (Some(table), _) => table.sentence(),
+            (None, Some(value)) => self.quantity(value),
+            (None, None) => "a function of time".to_owned(),
         };
-        self.is_given.then(|| format!("{} = {what}", self.name))
+        self.is_given.then(|| format!("{} = {}", self.name, what()))
     }
 
     /// What a table holds in the parts of a run that are outside its rows; nothing where there are none.
@@ -131,6 +133,7 @@ impl NamedTable {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Function;
     use super::*;
 
     const INFOS: [InputInfo; 3] = [
@@ -157,6 +160,8 @@ mod tests {
         assert_eq!((&json[1]["table"]["file"], &json[1]["table"]["crc32"]), (&"load.csv".into(), &"0a1b2c3d".into()));
         assert_eq!((&json[2]["is_given"], &json[2]["value"]), (&false.into(), &0.0.into()));
         assert_eq!(text(&[], [0.0, 1.0]), "");
+        let wave = named(&[Setting::Function(Function::new(f64::sin))], &INFOS[..1]);
+        assert_eq!(text(&wave, [0.0, 1.0]), "\ninput: force = a function of time\n");
     }
 
     #[test]

@@ -163,6 +163,22 @@ pub fn settings(settings: &[String], infos: &[InputInfo]) -> Result<Vec<Setting>
     Ok(inputs)
 }
 
+/// Sets the input called `name` of a model that declares `infos`, where the settings are not written.
+///
+/// # Errors
+/// There is no such input, or the rows are no table.
+pub fn set(
+    settings: &mut [Setting],
+    (name, setting): (&str, &Setting),
+    infos: &[InputInfo],
+) -> Result<(), InputSettingError> {
+    let written = || format!("{name}=[..]");
+    let index = infos.iter().position(|info| info.name == name).ok_or_else(|| unknown(&written(), name, infos))?;
+    setting.input().map_err(|fault| InputSettingError::Table { setting: written(), fault })?;
+    settings[index] = setting.clone();
+    Ok(())
+}
+
 fn unknown(setting: &str, name: &str, infos: &[InputInfo]) -> InputSettingError {
     InputSettingError::Unknown {
         setting: setting.to_owned(),

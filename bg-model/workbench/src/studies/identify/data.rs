@@ -53,12 +53,28 @@ pub enum DataError {
         line: usize,
     },
     /// The times do not ascend from 0 on.
-    #[error("the time {t} s in line {line} is not after the one before it, or below 0")]
+    #[error("the time {t} s {place} is not after the one before it, or below 0")]
     Order {
         /// The time.
         t: f64,
-        /// Its line.
-        line: usize,
+        /// Its line or row, in words.
+        place: String,
+    },
+    /// No time is after the start.
+    #[error("the last time must be after 0 s: a run ends there")]
+    NoSpan,
+    /// There is no column of the time.
+    #[error("there is no column `t`, the time in s")]
+    NoTimeColumn,
+    /// Columns are of different lengths.
+    #[error("the column `{name}` has {values} values, and `t` has {times}")]
+    Lengths {
+        /// The column.
+        name: String,
+        /// How many values it has.
+        values: usize,
+        /// How many the time has.
+        times: usize,
     },
     /// No column measures anything.
     #[error(
@@ -106,37 +122,7 @@ pub fn read(
     if is_row(csv.headers()?) {
         return Err(DataError::NoHead);
     }
-    let heads = csv.headers()?.clone();
-    let (header, units): (Vec<String>, Vec<Option<&str>>) =
-        heads.iter().map(name_and_unit).map(|(name, unit)| (name.to_owned(), unit)).unzip();
-    if header.first().map(String::as_str) != Some("t") {
-        return Err(DataError::NoTime);
-    }
-    if let Some((name, _)) = named.iter().find(|(name, _)| !header[1..].contains(name)) {
-        let near = header[1..].iter().map(|known| (strsim::jaro_winkler(name, known), known));
-        let near = near.filter(|(similarity, _)| *similarity > 0.7).max_by(|a, b| a.0.total_cmp(&b.0));
-        return Err(DataError::NoColumn { name: name.clone(), near: near.map(|(_, name)| name.clone()) });
-    }
-    let output_of = |name: &String| {
-        let said = named.iter().find(|(column, _)| column == name).map(|(_, output)| *output);
-        said.or_else(|| outputs.iter().position(|output| output.name == name))
-    };
-    let is_used = |output: &usize| only.is_empty() || only.contains(output);
-    let places: Vec<Option<usize>> = header[1..].iter().map(|name| output_of(name).filter(is_used)).collect();
-    let conversion = |(place, declared): (usize, &str)| {
-        let fault = |fault| DataError::Unit { column: header[place].clone(), fault };
-        Conversion::between(units[place].unwrap_or(declared), declared).map_err(fault)
-    };
-    let time = conversion((0, "s"))?;
-    let of_column = |(index, output): (usize, &Option<usize>)| {
-        output.map(|output| conversion((index + 1, outputs[output].unit))).transpose()
-    };
-    let conversions = places.iter().enumerate().map(of_column).collect::<Result<Vec<_>, _>>()?;
-    let column = |(name, output): (&String, &Option<usize>)| {
-        output.map(|output| Measured { name: name.clone(), output, values: Vec::new() })
-    };
-    let mut columns: Vec<Option<Measured>> = header[1..].iter().zip(&places).map(column).collect();
-    let mut times: Vec<f64> = Vec::new();
+    let mut rows = Rows::new(csv.headers()?.iter(), outputs, named, only)?;
     for (index, record) in csv.records().enumerate() {
         // Line 1 is the header, so record 0 stands in line 2.
         let line = index + 2;
@@ -146,25 +132,116 @@ pub fn read(
             number.map_err(|_| DataError::NotANumber { field: field.to_owned(), line })
         };
         let mut fields = record.iter();
-        let t = time.of(number(fields.next().unwrap_or_default())?);
-        if !(t >= 0.0 && t.is_finite() && times.last().is_none_or(|&last| t > last)) {
-            return Err(DataError::Order { t, line });
+        let t = number(fields.next().unwrap_or_default())?;
+        let values = fields.map(|field| if field.is_empty() { Ok(f64::NAN) } else { number(field) });
+        rows.push(t, values, || format!("in line {line}"))?;
+    }
+    rows.data()
+}
+
+/// The same of columns by name, one of which is `t`, as they would be in a file; what is not finite was not measured.
+///
+/// # Errors
+/// [`DataError`].
+pub fn of_columns(
+    columns: &[(String, Vec<f64>)],
+    outputs: &'static [OutputInfo],
+    named: &[(String, usize)],
+    only: &[usize],
+) -> Result<Data, DataError> {
+    let is_time = |(head, _): &&(String, Vec<f64>)| name_and_unit(head).0 == "t";
+    let (_, times) = columns.iter().find(is_time).ok_or(DataError::NoTimeColumn)?;
+    let others: Vec<&(String, Vec<f64>)> = columns.iter().filter(|column| !is_time(column)).collect();
+    if let Some((name, values)) = others.iter().find(|(_, values)| values.len() != times.len()) {
+        return Err(DataError::Lengths { name: name.clone(), values: values.len(), times: times.len() });
+    }
+    let heads = columns.iter().find(is_time).into_iter().chain(others.iter().copied()).map(|(head, _)| head.as_str());
+    let mut rows = Rows::new(heads, outputs, named, only)?;
+    for (row, &t) in times.iter().enumerate() {
+        rows.push(t, others.iter().map(|(_, values)| Ok(values[row])), || format!("in row {}", row + 1))?;
+    }
+    rows.data()
+}
+
+/// Rows that are read one after the other, in the units of their heads.
+struct Rows {
+    names: Vec<String>,
+    time: Conversion,
+    times: Vec<f64>,
+    /// A place for each column but that of the time; none where it measures nothing.
+    columns: Vec<Option<(Measured, Conversion)>>,
+}
+
+impl Rows {
+    /// Without rows, of these heads.
+    fn new<'a>(
+        heads: impl Iterator<Item = &'a str>,
+        outputs: &'static [OutputInfo],
+        named: &[(String, usize)],
+        only: &[usize],
+    ) -> Result<Self, DataError> {
+        let mut heads = heads.map(name_and_unit);
+        let Some(("t", unit)) = heads.next() else { return Err(DataError::NoTime) };
+        let conversion = |column: &str, unit: Option<&str>, declared: &str| {
+            let fault = |fault| DataError::Unit { column: column.to_owned(), fault };
+            Conversion::between(unit.unwrap_or(declared), declared).map_err(fault)
+        };
+        let time = conversion("t", unit, "s")?;
+        let heads: Vec<(&str, Option<&str>)> = heads.collect();
+        let names: Vec<String> = heads.iter().map(|&(name, _)| name.to_owned()).collect();
+        if let Some((name, _)) = named.iter().find(|(name, _)| !names.contains(name)) {
+            let near = names.iter().map(|known| (strsim::jaro_winkler(name, known), known));
+            let near = near.filter(|(similarity, _)| *similarity > 0.7).max_by(|a, b| a.0.total_cmp(&b.0));
+            return Err(DataError::NoColumn { name: name.clone(), near: near.map(|(_, name)| name.clone()) });
         }
-        times.push(t);
-        for ((column, conversion), field) in columns.iter_mut().zip(&conversions).zip(fields) {
-            if let (Some(column), Some(unit)) = (column, conversion) {
-                let value = if field.is_empty() { None } else { Some(unit.of(number(field)?)) };
-                let value = value.filter(|value| value.is_finite());
-                column.values.push(value);
+        let output_of = |name: &str| {
+            let said = named.iter().find(|(column, _)| column == name).map(|(_, output)| *output);
+            let output = said.or_else(|| outputs.iter().position(|output| output.name == name));
+            output.filter(|output| only.is_empty() || only.contains(output))
+        };
+        let column = |(name, unit): (&str, Option<&str>)| {
+            let Some(output) = output_of(name) else { return Ok(None) };
+            let measured = Measured { name: name.to_owned(), output, values: Vec::new() };
+            Ok(Some((measured, conversion(name, unit, outputs[output].unit)?)))
+        };
+        let columns = heads.into_iter().map(column).collect::<Result<_, DataError>>()?;
+        Ok(Self { names, time, times: Vec::new(), columns })
+    }
+
+    /// A row that stands at `place`.
+    fn push(
+        &mut self,
+        t: f64,
+        values: impl Iterator<Item = Result<f64, DataError>>,
+        place: impl Fn() -> String,
+    ) -> Result<(), DataError> {
+        let t = self.time.of(t);
+        if !(t >= 0.0 && t.is_finite() && self.times.last().is_none_or(|&last| t > last)) {
+            return Err(DataError::Order { t, place: place() });
+        }
+        self.times.push(t);
+        for (column, value) in self.columns.iter_mut().zip(values) {
+            if let Some((column, unit)) = column {
+                column.values.push(Some(unit.of(value?)).filter(|value| value.is_finite()));
             }
         }
+        Ok(())
     }
-    let ignored = header[1..].iter().zip(&columns).filter(|(_, column)| column.is_none()).map(|(name, _)| name.clone());
-    let data = Data { ignored: ignored.collect(), times, columns: columns.into_iter().flatten().collect() };
-    if data.count() == 0 {
-        return Err(DataError::NothingMeasured(header[1..].join(", ")));
+
+    fn data(self) -> Result<Data, DataError> {
+        let Self { names, times, columns, .. } = self;
+        let ignored = names.iter().zip(&columns).filter(|(_, column)| column.is_none()).map(|(name, _)| name.clone());
+        let ignored = ignored.collect();
+        let columns = columns.into_iter().flatten().map(|(column, _)| column).collect();
+        let data = Data { times, columns, ignored };
+        if data.count() == 0 {
+            return Err(DataError::NothingMeasured(names.join(", ")));
+        }
+        if data.times.last().is_none_or(|&last| last <= 0.0) {
+            return Err(DataError::NoSpan);
+        }
+        Ok(data)
     }
-    Ok(data)
 }
 
 /// The output that a `NAME=OUTPUT` names; the text of what is wrong with it.
@@ -219,6 +296,21 @@ mod tests {
     }
 
     #[test]
+    fn columns_are_what_a_file_of_them_is() {
+        let column = |name: &str, values: &[f64]| (name.to_owned(), values.to_vec());
+        let of = |columns: &[(String, Vec<f64>)]| of_columns(columns, &OUTPUTS, &[("load".to_owned(), 1)], &[]);
+        let x = column("x [mm]", &[250.0, f64::NAN]);
+        let data = of(&[x.clone(), column("t [ms]", &[0.0, 100.0]), column("load", &[2.0, 3.0])]).unwrap();
+        let text = "t [ms],x [mm],load\n0,250,2\n100,,3\n";
+        assert_eq!(data, super::read(text.as_bytes(), &OUTPUTS, &[("load".to_owned(), 1)], &[]).unwrap());
+        let fault = |columns: &[(String, Vec<f64>)]| of(columns).unwrap_err().to_string();
+        assert_eq!(fault(std::slice::from_ref(&x)), "there is no column `t`, the time in s");
+        assert_eq!(fault(&[x, column("t", &[0.0])]), "the column `x [mm]` has 2 values, and `t` has 1");
+        let fell = [column("t", &[1.0, 0.5]), column("load", &[0.0, 0.0])];
+        assert_eq!(fault(&fell), "the time 0.5 s in row 2 is not after the one before it, or below 0");
+    }
+
+    #[test]
     fn what_cannot_be_used_is_said() {
         let fault = |text: &str, named: &[(&str, usize)]| read(text, named).unwrap_err();
         assert!(fault("x,y\n", &[]).contains("must be `t`"));
@@ -226,6 +318,7 @@ mod tests {
         assert!(fault("t,x\n0,a\n", &[]).contains("`a` in line 2"));
         assert!(fault("t,x\n1,0\n0.5,0\n", &[]).contains("line 3"));
         assert!(fault("t,y\n0,1\n", &[]).contains("none of its columns (y)"));
+        assert_eq!(fault("t,x\n0,1\n", &[]), "the last time must be after 0 s: a run ends there");
         assert!(fault("t,lode\n0,1\n", &[("load", 1)]).contains("did you mean `lode`"));
         assert!(pair("a=forse", &OUTPUTS).unwrap_err().contains("did you mean `force`"));
         assert_eq!(pair("a = x", &OUTPUTS), Ok(("a".to_owned(), 0)));

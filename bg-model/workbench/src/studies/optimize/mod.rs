@@ -58,7 +58,7 @@ const STACK: usize = 8 << 20;
 #[derive(Debug, Error)]
 pub enum AskedError {
     /// A goal or a requirement cannot be read.
-    #[error("--{option} {text}: {fault}")]
+    #[error("--{option} \"{text}\": {fault}")]
     Criterion {
         /// The option.
         option: &'static str,
@@ -68,7 +68,7 @@ pub enum AskedError {
         fault: CriterionError,
     },
     /// A variable cannot be one.
-    #[error("--by {text}: {fault}")]
+    #[error("--by \"{text}\": {fault}")]
     Variable {
         /// What was given.
         text: String,
@@ -79,7 +79,7 @@ pub enum AskedError {
     #[error("{0} goals: give one with --minimize or --maximize, or two for their front")]
     Goals(usize),
     /// There is nothing to change.
-    #[error("nothing may change: give parameters with --by, as in --by length=0.5..0.9,stiffness")]
+    #[error("nothing may change: give parameters with --by, as in --by length=0.5..0.9")]
     NoVariable,
     /// A time outside of the run.
     #[error(transparent)]

@@ -461,8 +461,10 @@ fn wanted(file: &File, model: &Description) -> Result<Wanted, String> {
     let output = |name: &String| {
         model.outputs.iter().position(|output| output.name == name).ok_or_else(|| {
             let near = nearest(name, model.outputs.iter().map(|output| output.name));
-            let near = near
-                .map_or_else(|| "the command `scene` lists them".to_owned(), |near| format!("did you mean `{near}`?"));
+            let near = near.map_or_else(
+                || "the command `scene` lists the outputs".to_owned(),
+                |near| format!("did you mean `{near}`?"),
+            );
             format!("there is no output `{name}`; {near}")
         })
     };

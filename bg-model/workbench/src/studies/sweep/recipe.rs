@@ -81,6 +81,8 @@ fn input(setting: &Setting) -> Value {
     match setting {
         Setting::NotGiven => Value::Float(0.0),
         Setting::Constant(value) => Value::Float(*value),
+        // A plan is a text, in which there is none.
+        Setting::Function(_) => Value::String("a function".to_owned()),
         Setting::Table { times, values, cubic, .. } => {
             let bytes: Vec<u8> = times.iter().chain(values).flat_map(|value| value.to_le_bytes()).collect();
             Value::String(format!("{} rows, cubic {cubic}, {}", times.len(), crc32(&bytes)))
