@@ -20,6 +20,8 @@ pub use crate::text::{Counted, Text, Wanted};
 
 /// The largest file that is read, bytes: a mechanism of a thousand bodies has a tenth of it.
 const LARGEST: u64 = 8 << 20;
+/// The endings of files that hold no mechanism.
+const DATA: [&str; 6] = ["csv", "json", "toml", "parquet", "svg", "html"];
 /// How often a file is read that changes meanwhile, and the pause before it is read again.
 const ATTEMPTS: usize = 5;
 const PAUSE: Duration = Duration::from_millis(20);
@@ -47,6 +49,9 @@ pub enum FileFault {
     /// It is Rust, or a robot.
     #[error("{}: no text of the language alone; give a file such as saw.bond", .0.display())]
     Other(PathBuf),
+    /// It is a table, settings, a picture or a page.
+    #[error("{}: data, no mechanism; the file of the mechanism comes first, such as saw.bond", .0.display())]
+    Data(PathBuf),
     /// Its brackets are too deep for a reader of any kind.
     #[error("{}: brackets in brackets, more than {DEEPEST} deep", .0.display())]
     Deep(PathBuf),
@@ -60,11 +65,18 @@ pub enum FileFault {
     },
 }
 
-/// The text of a file.
+/// The text of the file of a mechanism.
 ///
 /// # Errors
 /// [`FileFault`].
 pub fn read(path: &Path) -> Result<Text, FileFault> {
+    let is_data = |ending: &str| DATA.iter().any(|data| ending.eq_ignore_ascii_case(data));
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    if ending.is_some_and(is_data) { Err(FileFault::Data(path.to_owned())) } else { taken(path) }
+}
+
+/// The text of a file of any kind.
+fn taken(path: &Path) -> Result<Text, FileFault> {
     let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
     let format = match ending.as_ref().and_then(|ending| ending.to_str()) {
         Some("urdf") => Some(Format::Urdf),
@@ -90,7 +102,7 @@ pub fn read_text(path: &Path) -> Result<Text, FileFault> {
 
 /// A file that a text uses.
 fn open(path: &Path) -> Result<Opened, String> {
-    Ok(read(path).map_err(|fault| fault.to_string())?.opened())
+    Ok(taken(path).map_err(|fault| fault.to_string())?.opened())
 }
 
 /// The file that a path leads to; the path where it leads to none, as that of a text from elsewhere.
@@ -166,6 +178,9 @@ fn imported(format: Format, path: &Path) -> Result<String, FileFault> {
     let fault = |fault: bg_import::ImportError| FileFault::Import { path: path.to_owned(), fault: fault.to_string() };
     let imported = import_file(format, path, options).map_err(fault)?;
     imported.notes.iter().for_each(console::note);
+    if imported.notes.iter().any(|note| note.contains(" --")) {
+        console::note(&"options in these notes are those of `bg-import`, which writes a robot as a text to go on with");
+    }
     Ok(imported.text)
 }
 

@@ -282,6 +282,10 @@ fn what_is_no_text_is_one_clear_error() {
     for (line, said) in [
         ("run bytes.bond", "no text in UTF-8"),
         ("run missing.bond", "cannot read missing.bond"),
+        (
+            "identify measured.csv --fit length",
+            "measured.csv: data, no mechanism; the file of the mechanism comes first",
+        ),
         ("run open.bond", "close what is open"),
         ("run deep.bond", "brackets in brackets"),
         ("run empty.bond", "graph"),
@@ -347,6 +351,7 @@ fn a_robot_and_a_rust_file_are_run() {
         <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint></robot>"#,
     );
     told(folder.path(), "run arm.urdf --t-end 0.2");
+    assert!(refused(folder.path(), "report arm.urdf --live", 2).contains("the page that `bond serve` opens"));
     write(&folder, "swing.rs", &format!("bg_model::bond_graph! {{ {SWING} }} fn main() {{}}"));
     told(folder.path(), "run swing.rs --t-end 0.2");
 }

@@ -85,7 +85,9 @@ fn a_sweep_of_three_parameters_has_parallel_axes() {
     write(&folder, "rotor.bond", ROTOR);
     let grid = "t_end = 0.05\n[grid]\nspeed = [0, 1000, 2000]\ntilt = [1000, 2000]\nmass = [4, 5]\n";
     write(&folder, "plan.toml", &format!("{grid}[columns]\nx = ['max']\ny = ['max']\n"));
-    told(folder.path(), "sweep rotor.bond --plan plan.toml --out o");
+    let said = told(folder.path(), "sweep rotor.bond --plan plan.toml --out o");
+    assert!(said.contains("`sweep rotor.bond show o` says what is there"), "{said}");
+    assert!(told(folder.path(), "sweep rotor.bond show o").contains("runs     12 of 12"));
     let page = std::fs::read_to_string(folder.path().join("o/index.html")).expect("a page");
     // Of both numbers one figure with parallel axes, and one over each parameter.
     assert_eq!(page.matches("<figure>").count(), 8);

@@ -407,10 +407,10 @@ fn what_fails_is_told() {
         "{text}"
     );
     let text = told(&[&["--minimize", "max y"], &by[..]].concat(), 2);
-    assert!(text.contains("--minimize max y: there is no output, parameter or measure `y`"), "{text}");
+    assert!(text.contains("--minimize \"max y\": there is no output, parameter or measure `y`"), "{text}");
     let text = told(&["--minimize", "max x", "--by", "dampng"], 2);
     assert!(
-        text.contains("--by dampng: scene `literal` has no parameter `dampng`") && text.contains("`damping`"),
+        text.contains("--by \"dampng\": scene `literal` has no parameter `dampng`") && text.contains("`damping`"),
         "{text}"
     );
     let text = told(&["--minimize", "max x", "--by", "damping=5..2"], 2);
