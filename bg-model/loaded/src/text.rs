@@ -160,7 +160,7 @@ pub fn syntax_faults(text: &str) -> Vec<Fault> {
     placed(&Gathered::default(), faults)
 }
 
-/// What a reader of a text is told of its words and functions where they stand; nothing of what is no text of tokens.
+/// The words and functions of a text where they stand; nothing of what is no text of tokens.
 #[must_use]
 pub fn told(text: &str) -> Vec<Told> {
     files::alone(text).map_or_else(|_| Vec::new(), |tokens| source::told::told(&tokens))

@@ -1,45 +1,39 @@
-//! What a reader is told of words and functions where they stand in a text: by editors that run the compiler themselves.
+//! Where the words and functions of the language stand in a text: for editors that run the compiler themselves.
 //!
-//! In: the tokens of a call, with faults or without. Out: the sentence of [`super::vocabulary`] of each word in its block,
-//! all of [`super::functions`] of each function that is called. What rust-analyzer shows of them is the same.
+//! In: the tokens of a call, with faults or without. Out: each word with its block, each function that is called, with
+//! its place. What a reader is told of them is in [`super::vocabulary`] and [`super::functions`], as rust-analyzer shows it:
+//! who asks has these beside it, so that a small compiler needs no texts.
 
 use std::ops::Range;
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
 use crate::source::ast::Spoken;
-use crate::source::functions::{self, Function};
+use crate::source::functions;
 use crate::source::syntax::parse_leniently;
-use crate::source::vocabulary::meaning;
 
-/// What is told of a word.
+/// A word or function.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Told {
     /// Where it stands, in bytes of the text.
     pub bytes: Range<usize>,
-    /// How a function is called, a line for each number of arguments; of a word the word and its block.
-    pub head: String,
-    /// What it says, in a sentence or two; what stands between backticks is code.
-    pub meaning: &'static str,
-    /// The units that a function takes and gives; of a word none.
-    pub units: Option<&'static str>,
-    /// A statement that uses a function; of a word none.
-    pub example: Option<&'static str>,
+    /// The block of a word, as messages call it; none of a function.
+    pub block: Option<&'static str>,
+    /// Its name.
+    pub word: String,
 }
 
-/// All that is told of a call, in the order of the text.
+/// All of a call: the words in the order of the text, then the functions in theirs.
 #[must_use]
 pub fn told(tokens: &TokenStream) -> Vec<Told> {
     let (source, _) = parse_leniently(tokens.clone());
-    let word = |spoken: &Spoken| {
-        let (name, meaning) = (&spoken.word.text, meaning(spoken.block, &spoken.word.text)?);
-        let head = format!("{name}, in {}", spoken.block);
-        Some(Told { bytes: spoken.word.span.byte_range(), head, meaning, units: None, example: None })
+    let word = |Spoken { block, word, .. }: Spoken| Told {
+        bytes: word.span.byte_range(),
+        block: Some(block),
+        word: word.text,
     };
-    let mut all: Vec<Told> = source.heard.words.iter().filter_map(word).collect();
+    let mut all: Vec<Told> = source.heard.words.into_iter().map(word).collect();
     calls(tokens, &mut all);
-    all.sort_by_key(|told| told.bytes.start);
-    all.dedup_by_key(|told| told.bytes.start);
     all
 }
 
@@ -50,15 +44,13 @@ fn calls(tokens: &TokenStream, all: &mut Vec<Told>) {
         match &token {
             TokenTree::Group(group) => {
                 let called = before.take().filter(|_| group.delimiter() == Delimiter::Parenthesis);
-                if let Some((function, bytes)) = called {
-                    let &Function { meaning, units, example, .. } = function;
-                    let head = Function::calls(function).join("\n");
-                    all.push(Told { bytes, head, meaning, units: Some(units), example: Some(example) });
-                }
+                all.extend(called);
                 calls(&group.stream(), all);
             }
             TokenTree::Ident(name) => {
-                before = functions::named(&name.to_string()).map(|function| (function, name.span().byte_range()));
+                let word = name.to_string();
+                let is_function = functions::named(&word).is_some();
+                before = is_function.then(|| Told { bytes: name.span().byte_range(), block: None, word });
             }
             _ => before = None,
         }
@@ -68,6 +60,7 @@ fn calls(tokens: &TokenStream, all: &mut Vec<Told>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::source::vocabulary::meaning;
 
     /// What is told, by what stands there.
     fn of(text: &str) -> Vec<(String, Told)> {
@@ -76,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_told_by_their_blocks_and_functions_where_they_are_called() {
+    fn words_have_their_blocks_and_functions_stand_where_they_are_called() {
         let text = "graph G { /// Ä: a rod.
             param min: m = 1; ground { point O = [0, 0, 0]; }
             body rod { mass 1; inertia [1, 1, 1]; point end = [1, 0, 0]; }
@@ -86,14 +79,13 @@ mod tests {
         let [stiffness] = &told.iter().filter(|(word, _)| word == "stiffness").collect::<Vec<_>>()[..] else {
             panic!("{told:?}")
         };
-        assert_eq!(stiffness.1.head, "stiffness, in a joint");
-        assert_eq!(Some(stiffness.1.meaning), meaning("a joint", "stiffness"));
+        assert_eq!((stiffness.1.block, stiffness.1.word.as_str()), (Some("a joint"), "stiffness"));
         // The parameter of this name is none.
         let [min] = &told.iter().filter(|(word, _)| word == "min").collect::<Vec<_>>()[..] else { panic!("{told:?}") };
-        assert_eq!((min.1.head.as_str(), min.1.meaning), ("min(a, b)", functions::named("min").unwrap().meaning));
-        assert!(min.1.bytes.start > text.find("least").unwrap() && min.1.example.is_some());
+        assert!(min.1.block.is_none() && min.1.bytes.start > text.find("least").unwrap(), "{min:?}");
         for word in ["graph", "param", "body", "mass", "revolute", "observe"] {
-            assert!(told.iter().any(|(found, _)| found == word), "{word}: {told:?}");
+            let (_, one) = told.iter().find(|(found, _)| found == word).expect(word);
+            assert!(one.block.is_some_and(|block| meaning(block, word).is_some()), "{one:?}");
         }
     }
 

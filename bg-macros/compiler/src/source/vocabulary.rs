@@ -32,7 +32,7 @@ const ORIFICE: &[&str] = &["an orifice"];
 const SCENE: &[&str] = &["a scene"];
 
 /// All words. Where one stands twice, the first entry that is of its block counts.
-const WORDS: &[Word] = &[
+pub const WORDS: &[Word] = &[
     // The call.
     word("graph", "A mechanism, machine or circuit: `graph NAME { .. }`. It becomes a model."),
     word(

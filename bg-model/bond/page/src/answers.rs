@@ -30,8 +30,8 @@ pub enum Question {
         /// The text.
         text: String,
     },
-    /// What is told of the words and functions of a text: `{ "told": [{ "bytes": [FROM, TO], "head": .., "meaning": ..,
-    /// "units": .., "example": .. }] }`, in the order of the text; the last two of functions alone.
+    /// The words and functions of a text: `{ "words": [{ "bytes": [FROM, TO], "block": .., "word": .. }] }`, the words in
+    /// the order of the text, then the functions, whose block is `null`. What is told of them is in the file beside the page.
     Words {
         /// The text.
         text: String,
@@ -111,23 +111,20 @@ struct KnownScene {
 
 #[derive(Debug, Serialize)]
 struct Words<'a> {
-    told: &'a [Word<'a>],
+    words: Vec<Word<'a>>,
 }
 
-/// What is told of a word.
+/// A word or function.
 #[derive(Debug, Serialize)]
 struct Word<'a> {
     bytes: [usize; 2],
-    head: &'a str,
-    meaning: &'a str,
-    units: Option<&'a str>,
-    example: Option<&'a str>,
+    block: Option<&'a str>,
+    word: &'a str,
 }
 
 impl<'a> Word<'a> {
-    fn of(told: &'a Told) -> Self {
-        let Told { bytes, head, meaning, units, example } = told;
-        Self { bytes: [bytes.start, bytes.end], head, meaning, units: *units, example: *example }
+    fn of(Told { bytes, block, word }: &'a Told) -> Self {
+        Self { bytes: [bytes.start, bytes.end], block: *block, word }
     }
 }
 
@@ -165,9 +162,7 @@ impl Answerer {
                     Wanted { scene: Some(scene.clone().unwrap_or_default()), counted: Counted::Made, most: None };
                 self.checked(text, &wanted, Some((graph, scene)))
             }
-            Ok(Question::Words { text }) => {
-                json(&Words { told: &told(&text).iter().map(Word::of).collect::<Vec<_>>() })
-            }
+            Ok(Question::Words { text }) => json(&Words { words: told(&text).iter().map(Word::of).collect() }),
             Ok(Question::Report(run)) => json(&self.told(|program, scene| {
                 let order = order(program, scene, &run);
                 live::report(program, &order).map(Answer::Page)

@@ -5,9 +5,11 @@
 
 use std::path::Path;
 
+use bg_loaded::functions::{FUNCTIONS, Function};
+use bg_loaded::vocabulary::{self, Word};
 use bg_workbench::live::Module;
 use bg_workbench::page::BESIDE;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 use crate::answers::Answerer;
 use crate::examples::{self, Offered};
@@ -24,23 +26,33 @@ const TEXTS: [(&str, &str); 5] = [
 pub const MODULE: &str = "bond.wasm";
 /// The examples.
 const EXAMPLES: &str = "examples.json";
+/// What is told of the language's words and functions.
+const WORDS: &str = "words.json";
 /// The report of the first example, with which the page opens before its compiler is there: the bytes that this gives.
 const FIRST: &str = "first.html";
 
 /// What is made small rather than fast, since it does not run once for each step, and how: a third of the whole module.
-const SMALL: [(&str, &str); 11] = [
+const SMALL: [(&str, &str); 19] = [
     ("bg-analysis", "z"),
     ("bg-compiler", "z"),
     // What a compilation calculates with.
     ("bg-expressions", "s"),
     ("bg-picture", "z"),
+    ("bg-units", "z"),
     ("bg-workbench", "z"),
     ("bond-graph", "z"),
+    ("csv", "z"),
+    ("csv-core", "z"),
     ("proc-macro2", "z"),
     ("quote", "z"),
     ("serde_json", "z"),
+    ("strsim", "z"),
     ("syn", "z"),
     ("toml", "z"),
+    ("toml_datetime", "z"),
+    ("toml_parser", "z"),
+    ("toml_writer", "z"),
+    ("winnow", "z"),
 ];
 
 /// Builds the module and writes all files; gives a sentence that says so.
@@ -55,14 +67,28 @@ pub fn write(folder: &Path) -> Result<String, String> {
     let examples = serde_json::to_string(&examples).expect("texts and numbers");
     std::fs::create_dir_all(folder).map_err(|fault| format!("cannot make {}: {fault}", folder.display()))?;
     let texts = TEXTS.into_iter().chain(BESIDE).map(|(name, text)| (name, text.as_bytes()));
-    for (name, bytes) in
-        texts.chain([(MODULE, &module[..]), (EXAMPLES, examples.as_bytes()), (FIRST, first.as_bytes())])
-    {
+    let words = words().to_string();
+    let made =
+        [(MODULE, &module[..]), (EXAMPLES, examples.as_bytes()), (WORDS, words.as_bytes()), (FIRST, first.as_bytes())];
+    for (name, bytes) in texts.chain(made) {
         let path = folder.join(name);
         std::fs::write(&path, bytes).map_err(|fault| format!("cannot write {}: {fault}", path.display()))?;
     }
     let folder = folder.display();
     Ok(format!("written: {folder}; put it on a static server, or open it by: bond serve --page {folder}"))
+}
+
+/// What is told of words, by their blocks, and of functions, by their names.
+fn words() -> Value {
+    let word = |Word { word, of, meaning }: &Word| json!({ "word": word, "of": of, "meaning": meaning });
+    let function = |function: &Function| {
+        let Function { name, meaning, units, example, .. } = function;
+        let told =
+            json!({ "head": function.calls().join("\n"), "meaning": meaning, "units": units, "example": example });
+        ((*name).to_owned(), told)
+    };
+    let functions: Map<String, Value> = FUNCTIONS.iter().map(function).collect();
+    json!({ "words": vocabulary::WORDS.iter().map(word).collect::<Vec<_>>(), "functions": functions })
 }
 
 /// The report of an example, as the page's own compiler gives it.

@@ -109,12 +109,17 @@ fn what_is_compiled_can_be_chosen_and_run() {
     assert_eq!(answers[7]["faults"][0]["code"], "BG0301");
     assert!(answers[8]["faults"][0]["message"].is_string(), "a text alone uses no files: {}", answers[8]);
     assert!(answers[9]["faults"][0]["message"].as_str().unwrap().contains("more than 200 deep"));
-    let told = answers[10]["told"].as_array().expect("words");
-    let word = |name: &str| told.iter().find(|word| word["head"].as_str().is_some_and(|head| head.starts_with(name)));
-    assert!(word("stiffness, in a joint").is_some_and(|word| word["meaning"].as_str().unwrap().len() > 20));
-    let function = word("rotation_z(a)").expect("a function");
-    let [from, to] = [0, 1].map(|end| function["bytes"][end].as_u64().unwrap() as usize);
-    assert_eq!((&text("first")[from..to], function["example"].is_string()), ("rotation_z", true));
+    let words = answers[10]["words"].as_array().expect("words");
+    let word = |block: Value, word: &str| {
+        let found = words.iter().find(|one| one["block"] == block && one["word"] == word);
+        let [from, to] = [0, 1].map(|end| found.expect(word)["bytes"][end].as_u64().unwrap() as usize);
+        text("first")[from..to].to_owned()
+    };
+    assert_eq!(word(json!("a joint"), "stiffness"), "stiffness");
+    assert_eq!(
+        (word(Value::Null, "rotation_z"), word(json!("a graph"), "param")),
+        ("rotation_z".into(), "param".into())
+    );
     assert_eq!(answers[11]["chosen"], json!(["SliderCrank", "planar-slider-crank"]), "a graph that is there");
     assert!(answers[12]["page"].as_str().expect("a page").contains("<h1>SliderCrank: PlanarSliderCrank</h1>"));
     assert!(answers[13]["fault"].as_str().unwrap().starts_with("the question cannot be read: "));

@@ -7,6 +7,7 @@ import { element, lasting, withCode } from "./elements.js";
 import { read, written } from "./link.js";
 import { show } from "./report.js";
 import { trial } from "./trial.js";
+import { Words } from "./words.js";
 import { Compiler, Stopped } from "./workers.js";
 
 /** After the last key so long nothing is compiled, milliseconds. */
@@ -33,15 +34,14 @@ class Page {
   #timer;
   /** Counts what was to be shown: an answer for what was shown before is not shown. */
   #version = 0;
-  /** What is told of the words of a text, the last one that was asked for. */
-  #words = { text: null, told: null };
   #says = { compiled: "", run: "", rate: "" };
 
   constructor(examples, module) {
     this.examples = examples;
     this.runner = new Compiler(module);
     this.checker = new Compiler(module);
-    this.editor = new Editor(part("editor"), () => this.typed(), (text) => this.#told(text));
+    const words = new Words(this.checker);
+    this.editor = new Editor(part("editor"), () => this.typed(), (text) => words.told(text));
     this.shown = { text: "", graph: null, scene: "", t_end: null, step: null, inputs: {} };
     this.faults = [];
     // What a report in the frame asks for: something like a worker that runs the model which it shows.
@@ -78,21 +78,6 @@ class Page {
     this.editor.text = this.shown.text;
     await this.#update(isThere);
     if (unreadable !== null) this.#tell(unreadable, true);
-  }
-
-  /** What is told of the words of a text; nothing while it is being looked for faults in another one. */
-  async #told(text) {
-    if (this.#words.text !== text) {
-      const told = this.checker.ask({ ask: "words", text }).then(({ answer }) => answer.told);
-      this.#words = { text, told };
-    }
-    try {
-      return await this.#words.told;
-    } catch (fault) {
-      this.#words = { text: null, told: null };
-      if (fault instanceof Stopped) return [];
-      throw fault;
-    }
   }
 
   /** The reader has typed. */
