@@ -23,7 +23,7 @@ pub fn in_python(sentence: &str) -> String {
         told += &rest[..at];
         let after = &rest[at + DASHES.len()..];
         let (option, after) = after.split_at(after.find(|c: char| !is_of_option(c)).unwrap_or(after.len()));
-        let value = value_of(after);
+        let value = value_of(option, after);
         told += &argument(option, value, after);
         rest = &after[value.map_or(0, |value| 1 + value.len())..];
     }
@@ -75,13 +75,13 @@ fn next_option(text: &str) -> Option<usize> {
 
 /// What an option is given in a sentence: what stands after `=`; after one blank what is quoted, a number, a name in
 /// capitals, a pair with `=`, or what a colon follows.
-fn value_of(after: &str) -> Option<&str> {
+fn value_of<'a>(option: &str, after: &'a str) -> Option<&'a str> {
     let word = after.strip_prefix([' ', '='])?;
     if let Some(quoted) = word.strip_prefix('"') {
         return Some(&word[..2 + quoted.find('"')?]);
     }
     let word = word.split(char::is_whitespace).next()?;
-    let is_place = word.ends_with(':') || after.starts_with('=');
+    let is_place = word.ends_with(':') || after.starts_with('=') || option == "scene";
     let word = word.trim_end_matches([',', ';', ':', '.', '`', ')']);
     let looks_like_one = is_place && !word.is_empty()
         || word.contains('=')
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn options_are_arguments() {
         let told = [
-            ("--at -1: must be a finite number", "at -1: must be a finite number"),
+            ("--at -1: must be a finite number", "at=-1: must be a finite number"),
             ("--bounds: k=1: give it as NAME=LOWER..UPPER", "bounds: k=1: give it as NAME=LOWER..UPPER"),
             ("which graph? Say --graph NAME: there are `A`", "which graph? Say graph=\"NAME\": there are `A`"),
             ("leave --orders out", "leave orders= out"),
@@ -134,7 +134,8 @@ mod tests {
             ),
             ("no scene; the command `scene` lists the scenes", "no scene; `scenes()` lists the scenes"),
             ("--by k: there is none", "by=\"k\": there is none"),
-            ("it is fixed; use --scene=paper", "it is fixed; use scene=\"paper\""),
+            ("it is fixed; use --scene paper", "it is fixed; use scene=\"paper\""),
+            ("say it as --hint=dop853", "say it as hint=\"dop853\""),
             ("--set mass=2: out of range", "mass=2: out of range"),
             ("start inside with --set", "start inside with set="),
             ("say it with --column NAME=OUTPUT", "say it with columns=\"NAME=OUTPUT\""),

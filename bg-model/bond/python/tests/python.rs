@@ -5,6 +5,11 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// Its own tests are run here: `bg-python` alone cannot be linked with Python's functions.
+#[path = "../../../python/src/worded.rs"]
+#[allow(dead_code)]
+mod worded;
+
 /// The interpreter, if it has what the tests need.
 fn python() -> Option<PathBuf> {
     let python = PathBuf::from(std::env::var_os("PYTHON").unwrap_or_else(|| "python3".into()));

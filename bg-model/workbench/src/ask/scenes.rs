@@ -125,7 +125,7 @@ impl Scene {
 
 /// A value that a scene cannot take.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("scene `{scene}` keeps `{name}` fixed at {value}; use --scene={adjusting}")]
+#[error("scene `{scene}` keeps `{name}` fixed at {value}; use --scene {adjusting}")]
 pub struct Fixed {
     /// The scene.
     pub scene: String,
