@@ -176,6 +176,21 @@ impl<S: Scalar> Interpreted<S> {
         }
     }
 
+    /// Writes what a program gives at a time and a state: by the short way where there is one.
+    #[inline]
+    pub(crate) fn evaluate_at(
+        &self,
+        (code, row): (&Code, &RefCell<Row<S>>),
+        t: S,
+        x: &[S],
+        negative: &[S::Switch],
+        to: &mut [S],
+    ) {
+        if !code.evaluate_at(&row.borrow(), x, negative, to) {
+            self.evaluate(code, row, Moment::at(t, x, negative), to);
+        }
+    }
+
     /// Writes what a program gives at a moment. What iterations find for it is found first.
     pub(crate) fn evaluate(&self, code: &Code, row: &RefCell<Row<S>>, moment: Moment<'_, S>, to: &mut [S]) {
         if moment.found.is_empty() && code.reads_found() {

@@ -78,11 +78,11 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
     }
 
     fn rate(&self, t: S, x: &[S], negative: &[S::Switch], dx: &mut [S]) {
-        self.evaluate(&self.programs().rate, &self.rows.rate, Moment::at(t, x, negative), dx);
+        self.evaluate_at((&self.programs().rate, &self.rows.rate), t, x, negative, dx);
     }
 
     fn guards(&self, t: S, x: &[S], negative: &[S::Switch], guards: &mut [S]) {
-        self.evaluate(&self.programs().guards, &self.rows.guards, Moment::at(t, x, negative), guards);
+        self.evaluate_at((&self.programs().guards, &self.rows.guards), t, x, negative, guards);
     }
 
     fn memories(&self) -> Vec<usize> {
@@ -198,7 +198,7 @@ impl<S: Scalar> Dynamics<S> for Interpreted<S> {
             && let Some(code) = &of.forces
         {
             let row = self.own(&self.rows.forces, &of.constants, code);
-            self.evaluate(code, row, Moment::at(t, x, negative), dx);
+            self.evaluate_at((code, row), t, x, negative, dx);
         } else {
             self.rate(t, x, negative, dx);
             self.second_derivatives(x, dx);

@@ -2,8 +2,8 @@
 //!
 //! In: a [`Program`]. Out: the body of one function of five addresses: what is fixed, the states, what is read, the
 //! branches, where results go. Method: one instruction of Cranelift for each operation, in the order of
-//! [`Program::order`]; inputs are read where they are used, so that most are operands in memory; sine and cosine of one
-//! angle are one call.
+//! [`Program::order`]; inputs are read where they are used, and again where the last use is long ago; sine and cosine of
+//! one angle are one call.
 
 use std::collections::HashMap;
 
@@ -21,6 +21,10 @@ use cranelift_module::{FuncId, Linkage, Module};
 use super::functions::{SINE_AND_COSINE, called};
 use crate::program::{Operand, Program};
 
+/// An input is read again where its last use is more operations ago: kept longer, it takes a register that values need
+/// more (`docs/benchmarks/text.md`).
+const KEPT: usize = 24;
+
 /// Puts the function of a program into a module, which knows the functions that it calls; gives its number there. None
 /// where the back end cannot.
 pub fn translate(module: &mut JITModule, program: &Program) -> Option<FuncId> {
@@ -37,7 +41,8 @@ pub fn translate(module: &mut JITModule, program: &Program) -> Option<FuncId> {
         unreachable!("the signature has five addresses")
     };
     let values = vec![None; program.operations.len()];
-    let mut body = Body { builder, program, functions, address, inputs: [fixed, states, read], negative, values };
+    let inputs = Loads { addresses: [fixed, states, read], used: HashMap::new() };
+    let mut body = Body { builder, program, functions, address, inputs, negative, values, written: 0 };
     program.order().into_iter().for_each(|of| body.enter(of));
     for (place, &result) in program.results.iter().enumerate() {
         let value = body.operand(result);
@@ -107,10 +112,19 @@ struct Body<'a> {
     program: &'a Program,
     functions: Functions,
     address: Type,
-    /// Where what is fixed, states and what is read stand.
-    inputs: [Value; 3],
+    inputs: Loads,
     negative: Value,
     values: Vec<Option<Value>>,
+    /// How many operations are written.
+    written: usize,
+}
+
+/// The loads of inputs.
+struct Loads {
+    /// Where what is fixed, states and what is read stand.
+    addresses: [Value; 3],
+    /// Those that have been read since the last call, and before which operation each was used last.
+    used: HashMap<Operand, (Value, usize)>,
 }
 
 impl Body<'_> {
@@ -123,8 +137,15 @@ impl Body<'_> {
             Operand::State(place) => (1, place),
             Operand::Read(place) => (2, place),
         };
-        let flags = MemFlags::trusted().with_readonly();
-        self.builder.ins().load(types::F64, flags, self.inputs[of], offset(place as usize))
+        let value = match self.inputs.used.get(&operand) {
+            Some(&(value, last)) if self.written - last <= KEPT => value,
+            _ => {
+                let flags = MemFlags::trusted().with_readonly();
+                self.builder.ins().load(types::F64, flags, self.inputs.addresses[of], offset(place as usize))
+            }
+        };
+        self.inputs.used.insert(operand, (value, self.written));
+        value
     }
 
     /// Writes an operation, unless it is there.
@@ -135,6 +156,10 @@ impl Body<'_> {
         let program = self.program;
         let operation = &program.operations[of];
         let operands: Vec<Value> = operation.operands().into_iter().map(|operand| self.operand(operand)).collect();
+        self.written += 1;
+        if let Operation::Call(..) = operation {
+            self.inputs.used.clear();
+        }
         if let Some(&partner) = self.functions.partners.get(&of) {
             let [sine, cosine] = self.sine_and_cosine(operands[0]);
             let is_sine = matches!(operation, Operation::Call(expr::Function::Sin, _));
