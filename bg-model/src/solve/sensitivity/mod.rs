@@ -63,10 +63,6 @@ pub use differences::{DifferencesError, differences};
 use follow::Follower;
 use step::Stepper;
 
-/// The part of a parameter's value by which it is thought to change. Of more the error estimates would divide the run's
-/// own steps, and the slopes would no longer be the derivatives of these.
-const PART: f64 = 1.0 / 1024.0;
-
 /// What is to be done where a model delays signals.
 const DELAYS: &str = "what a run depends on then has a past of its own, which derivatives along a run do not have; take \
                       differences of runs, or delay samples in a block `every`";
@@ -299,13 +295,13 @@ impl Following<'_> {
     ) -> Result<Sensitivities, SensitivityError> {
         let start = self.plain.start()?;
         let scale = Scale::new(&self.request.tolerances(), start.len());
-        let is_estimated = self.request.method != Integrator::Dop853;
+        let is_own = self.request.method == Integrator::Dop853;
         let follower = |directions: &[Direction]| -> Result<Follower, SensitivityError> {
             let values: Vec<_> = directions.chunks(WIDTH).map(|few| sloped(self.values, few)).collect();
             let SideBySide { each, all } =
                 side_by_side(&values).unwrap_or_else(|| SideBySide::apart(model, &values))?;
             let sizes: Vec<f64> = directions.iter().map(|&of| self.size(of, &start)).collect();
-            let steps = Stepper::<V>::new(all, start.len(), is_estimated, (scale.clone(), &sizes));
+            let steps = Stepper::<V>::new(all, start.len(), is_own, (scale.clone(), &sizes));
             let plain = model.lifted(&sloped(self.values, &[]))?;
             Ok(Follower::new(each, plain, Box::new(steps), (directions, self.outputs), 0.0)?)
         };
@@ -333,12 +329,13 @@ impl Following<'_> {
     }
 
     /// The size of a direction: the change of it by which a slope may move a state as far from the truth as a step may.
+    /// Its value, one where that is zero.
     fn size(&self, direction: Direction, start: &[f64]) -> f64 {
         let value = match direction {
             Direction::Parameter(index) => self.values[index],
             Direction::Start(state) => start[state],
         };
-        if value == 0.0 { PART } else { PART * value.abs() }
+        if value == 0.0 { 1.0 } else { value.abs() }
     }
 }
 

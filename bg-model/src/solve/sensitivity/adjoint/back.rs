@@ -7,7 +7,9 @@
 //! as many sweeps as there are stages (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section
 //! VI.4; W. W. Hager, Numer. Math. 87 (2000)). An integral over the run is the step's quadrature h sum b_i g(x_i).
 //!
-//! As forward slopes do, it divides a step into equal parts where DOP853 is far too inexact: of a run by DOP853 never.
+//! As forward slopes do, it divides a step into equal parts: where DOP853 is far too inexact, which of a run by DOP853 it
+//! never is, and where the weights would be. A state at rest says nothing about these: a step by which DOP853 is unstable
+//! leaves it at rest. So from time to time, and before longer steps, a step is followed in twice as many parts as well.
 
 use pulp::NullaryFnOnce;
 
@@ -19,9 +21,12 @@ use crate::solve::statistics::Statistics;
 
 /// Parts of a step at most.
 const MOST_PARTS: u32 = 1 << 16;
-/// The estimated error of a part, in parts of what is allowed, from which on it is divided. A run by DOP853 has none
-/// above 1, or hardly more where a projection takes the error away.
+/// The estimated error of a part, in parts of what is allowed, from which on it is divided; also that of the weights, in
+/// parts of the relative tolerance. A run by DOP853 has states of none above 1, or hardly more where a projection takes the
+/// error away.
 const FAR: f64 = 100.0;
+/// So many steps of parts that are not longer follow without another look at the weights.
+const LOOK: u32 = 8;
 
 /// The state at the end of a step, before and after its projection.
 pub(super) struct End {
@@ -45,6 +50,15 @@ struct Part {
     h: f64,
 }
 
+/// What has been found so far.
+#[derive(Clone)]
+struct Found {
+    weights: Vec<f64>,
+    by_constants: Vec<f64>,
+    by_parameters: Vec<f64>,
+    integral: f64,
+}
+
 /// The method with its work space.
 pub(super) struct Back<'a> {
     model: &'a dyn Machine,
@@ -52,12 +66,18 @@ pub(super) struct Back<'a> {
     /// The model in numbers with slopes, for what has no sweeps.
     pub lifted: Lifted,
     scale: Scale,
+    /// By how much weights in parts of a step may differ from those in twice as many, relatively. Of a run by DOP853 half of
+    /// the digits have to agree: they are exact for its steps, unless these are unstable.
+    near: f64,
     method: Dop853,
     arch: Arch,
     transposed: Transposed<DormandPrince>,
     /// The start of each part of the last step.
     starts: Vec<Vec<f64>>,
     parts: u32,
+    /// The longest part by which weights were seen to be exact, s, and how many steps ago.
+    exact: f64,
+    since: u32,
     /// The rate at the start of a part; how the objective depends on the state of a stage; the outputs there.
     rate: Vec<f64>,
     by_stage: Vec<f64>,
@@ -71,9 +91,10 @@ pub(super) struct Back<'a> {
 }
 
 impl<'a> Back<'a> {
+    /// `is_own`: of a run by DOP853.
     pub fn new(
         (model, sweeps, lifted): (&'a dyn Machine, &'a dyn Swept, Lifted),
-        scale: Scale,
+        (scale, is_own): (Scale, bool),
         integrals: &[(usize, f64)],
     ) -> Self {
         let (states, outputs) = (model.states(), model.description().outputs.len());
@@ -85,12 +106,15 @@ impl<'a> Back<'a> {
             model,
             sweeps,
             lifted,
+            near: if is_own { scale.relative.sqrt() } else { FAR * scale.relative },
             scale,
             method,
             arch: Arch::new(),
             transposed: Transposed::new(states),
             starts: Vec::new(),
             parts: 1,
+            exact: 0.0,
+            since: 0,
             rate: vec![0.0; states],
             by_stage: vec![0.0; states],
             outputs: vec![0.0; outputs],
@@ -131,6 +155,57 @@ impl<'a> Back<'a> {
     /// Follows a step backwards: replaces the `weights` of the state at its end by those of the state at its start.
     /// Gives whether it did. Only a whole step adds to the integral.
     pub fn follow(&mut self, step: Crossing<'_>, is_whole: bool, weights: &mut [f64]) -> bool {
+        if self.since < LOOK && self.length(step) <= self.exact {
+            self.since += 1;
+            return self.follow_in_parts(step, is_whole, weights);
+        }
+        let before = self.found(weights);
+        self.parts = (self.parts / 2).max(1);
+        self.follow_in_parts(step, is_whole, weights);
+        while self.parts <= MOST_PARTS {
+            let (parts, coarse) = (self.parts, self.found(weights));
+            self.restore(before.clone(), weights);
+            self.parts = 2 * parts;
+            if self.follow_in_parts(step, is_whole, weights) && self.are_near(&coarse.weights, weights, step.x) {
+                // In as many parts as the steps that follow.
+                self.restore(coarse, weights);
+                self.parts = parts;
+                (self.exact, self.since) = (self.length(step), 0);
+                return true;
+            }
+        }
+        false
+    }
+
+    fn found(&self, weights: &[f64]) -> Found {
+        Found {
+            weights: weights.to_vec(),
+            by_constants: self.by_constants.clone(),
+            by_parameters: self.lifted.by.clone(),
+            integral: self.integral,
+        }
+    }
+
+    fn restore(&mut self, found: Found, weights: &mut [f64]) {
+        weights.copy_from_slice(&found.weights);
+        (self.by_constants, self.lifted.by, self.integral) = (found.by_constants, found.by_parameters, found.integral);
+    }
+
+    /// How long the parts of a step are, s.
+    fn length(&self, step: Crossing<'_>) -> f64 {
+        (step.to - step.from).abs() / f64::from(self.parts)
+    }
+
+    /// Whether what these weights say of changes as large as is allowed of each state is nearly the same.
+    fn are_near(&self, some: &[f64], others: &[f64], x: &[f64]) -> bool {
+        let of = |(i, weight): (usize, f64)| weight.abs() * self.scale.allowed_between(i, x[i], x[i]);
+        let most = others.iter().copied().enumerate().map(of).fold(0.0, f64::max);
+        let differences = some.iter().zip(others).map(|(some, other)| some - other);
+        differences.enumerate().map(of).all(|difference| difference <= self.near * most)
+    }
+
+    /// Follows a step backwards in as many parts as there are, or more where these are far too inexact.
+    fn follow_in_parts(&mut self, step: Crossing<'_>, is_whole: bool, weights: &mut [f64]) -> bool {
         let Some(end) = self.cross(step) else { return false };
         self.sweeps.reverse_project(step.to, &end.raw, step.negative, weights, &mut self.by_constants);
         for number in (0..self.parts).rev() {
@@ -142,7 +217,6 @@ impl<'a> Back<'a> {
             let arch = self.arch;
             arch.dispatch(Backwards { back: self, negative: step.negative, part, is_whole, weights });
         }
-        self.parts = (self.parts / 2).max(1);
         weights.iter().all(|weight| weight.is_finite())
     }
 
