@@ -35,8 +35,8 @@ const FIRST: &str = "first.html";
 const SMALL: [(&str, &str); 19] = [
     ("bg-analysis", "z"),
     ("bg-compiler", "z"),
-    // What a compilation calculates with.
-    ("bg-expressions", "s"),
+    // What a compilation calculates with: at "s" a compilation takes a sixth less, the module 2 % more.
+    ("bg-expressions", "z"),
     ("bg-picture", "z"),
     ("bg-units", "z"),
     ("bg-workbench", "z"),
