@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Rooms from the ground up; those of one floor do not know each other.
-const FLOORS: [&[&str]; 17] = [
+const FLOORS: [&[&str]; 18] = [
     &["model::scalar", "model::requirement", "model::holding"],
     &["model::drawing", "model::nearest", "model::joined", "model::tabled"],
     &["model::description"],
@@ -22,6 +22,7 @@ const FLOORS: [&[&str]; 17] = [
         "model::assembly",
     ],
     &["model::capability", "model::delay"],
+    &["model::slices"],
     &["model::system"],
     &["model::dynamics", "model::vectorised"],
     &["model::reactions", "model::mechanism", "model::sampled", "model::delayed"],

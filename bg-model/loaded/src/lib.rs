@@ -16,7 +16,7 @@ mod text;
 
 pub use bg_compiler::source::syntax::files::{Open, Opened};
 pub use bg_compiler::source::syntax::points::with_points;
-pub use bg_compiler::source::told::Told;
+pub use bg_compiler::source::syntax::told::Told;
 pub use bg_compiler::source::{functions, vocabulary};
 pub use blueprint::Blueprint;
 pub use bundle::{Bundle, Chosen};

@@ -22,6 +22,7 @@ pub mod requirement;
 pub mod sampled;
 pub mod scalar;
 pub mod series;
+pub(crate) mod slices;
 pub mod standing;
 pub mod start;
 pub mod system;

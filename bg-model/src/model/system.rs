@@ -10,10 +10,10 @@ use crate::model::assembly::AssemblyError;
 use crate::model::capability::{Absent, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
 use crate::model::delay::States;
 use crate::model::description::Description;
-use crate::model::dynamics::Dynamics;
 use crate::model::holding::Redundancy;
 use crate::model::origin::Origin;
 use crate::model::scalar::Scalar;
+use crate::model::slices::Dynamics;
 
 /// A system of ordinary differential equations dx/dt = f(t, x) with `N` states and `G` switches.
 ///

@@ -14,7 +14,6 @@ pub mod part;
 pub mod print;
 pub mod scene;
 pub mod syntax;
-pub mod told;
 pub mod visibility;
 pub mod vocabulary;
 pub(crate) mod walk;

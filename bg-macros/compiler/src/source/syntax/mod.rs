@@ -27,6 +27,7 @@ pub mod points;
 mod scene;
 mod statement;
 mod token;
+pub mod told;
 mod unit;
 
 #[cfg(test)]

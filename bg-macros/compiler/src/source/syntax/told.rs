@@ -1,16 +1,16 @@
 //! Where the words and functions of the language stand in a text: for editors that run the compiler themselves.
 //!
 //! In: the tokens of a call, with faults or without. Out: each word with its block, each function that is called, with
-//! its place. What a reader is told of them is in [`super::vocabulary`] and [`super::functions`], as rust-analyzer
+//! its place. What a reader is told of them is in [`crate::source::vocabulary`] and [`functions`], as rust-analyzer
 //! shows it: who asks has these beside it, so that a small compiler needs no texts.
 
 use std::ops::Range;
 
 use proc_macro2::{Delimiter, TokenStream, TokenTree};
 
+use super::parse_leniently;
 use crate::source::ast::Spoken;
 use crate::source::functions;
-use crate::source::syntax::parse_leniently;
 
 /// A word or function.
 #[derive(Clone, Debug, PartialEq, Eq)]
