@@ -1,5 +1,6 @@
 //! The gradient of the hacksaw's motion by all of its parameters, by the run followed backwards, against slopes that
-//! follow the run.
+//! follow the run: to the tolerance, as the gradient divides steps in which its weights ring. At 1e-12 both ways give
+//! 0.46314465581 where at 1e-8 slopes give ...649 and the gradient ...603.
 
 use bg_model::integrator::Integrator;
 use bg_model::run::Request;
@@ -27,7 +28,7 @@ fn by_all_parameters_over_events() {
         let slope = |k: usize| forward.of(k, output)[1];
         let size = (0..all.len()).fold(0.0_f64, |size, k| size.max(slope(k).abs()));
         for (k, by) in found.by.iter().enumerate() {
-            assert!((by - slope(k)).abs() < 1e-11 * size, "output {output}, parameter {k}: {by} {}", slope(k));
+            assert!((by - slope(k)).abs() < request.rtol * size, "output {output}, parameter {k}: {by} {}", slope(k));
         }
     }
 }
