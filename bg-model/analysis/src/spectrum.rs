@@ -6,7 +6,6 @@
 //! 51).
 
 use std::f64::consts::TAU;
-
 use std::sync::Arc;
 
 use rustfft::algorithm::butterflies::{Butterfly4, Butterfly8};

@@ -13,7 +13,7 @@ use bg_compiler::pipeline::{self, Compiled, Derived, Known};
 use bg_compiler::source::ast::Source;
 use bg_compiler::source::syntax::files::{self, Gathered, Open, Opened};
 use bg_compiler::source::syntax::told::Told;
-use bg_compiler::source::{self, part, syntax};
+use bg_compiler::source::{part, syntax};
 use bg_compiler::tables;
 pub use bg_compiler::tables::Counted;
 use bg_model::description::Description;
@@ -163,7 +163,7 @@ pub fn syntax_faults(text: &str) -> Vec<Fault> {
 /// The words and functions of a text where they stand; nothing of what is no text of tokens.
 #[must_use]
 pub fn told(text: &str) -> Vec<Told> {
-    files::alone(text).map_or_else(|_| Vec::new(), |tokens| source::syntax::told::told(&tokens))
+    files::alone(text).map_or_else(|_| Vec::new(), |tokens| syntax::told::told(&tokens))
 }
 
 /// The faults with their places in the files.

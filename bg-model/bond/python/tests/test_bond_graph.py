@@ -9,18 +9,7 @@ import numpy as np
 import pytest
 
 import bond_graph as bg
-
-SWING = """
-/// A mass on a spring.
-graph Swing {
-    param mass: kg = 2, above 0;
-    param stiffness: N/m = 50;
-    1 slide: translation;
-    I body = mass; C spring = stiffness start 0.1;
-    slide -> body; slide -> spring;
-    observe { x: m = spring.q; v: m/s = slide.flow }
-}
-"""
+from mechanisms import SWING
 
 
 def test_a_run_is_what_theory_says():

@@ -11,17 +11,8 @@ import numpy as np
 import pytest
 
 import bond_graph as bg
+from mechanisms import SWING
 
-SWING = """
-graph Swing {
-    param mass: kg = 2, above 0;
-    param stiffness: N/m = 50;
-    1 slide: translation;
-    I body = mass; C spring = stiffness start 0.1;
-    slide -> body; slide -> spring;
-    observe { x: m = spring.q }
-}
-"""
 #: A run that takes minutes.
 LONG = {"t_end": 1e6, "step": 1e3}
 TIMES = np.linspace(0, 1e6, 50)

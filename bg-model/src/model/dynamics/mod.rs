@@ -23,7 +23,7 @@ use alloc::vec::Vec;
 
 use crate::model::assembly::AssemblyError;
 #[cfg(doc)]
-use crate::model::capability::{Elimination, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
+use crate::model::capability::Reversed;
 use crate::model::description::Description;
 use crate::model::holding::Redundancy;
 use crate::model::scalar::Scalar;

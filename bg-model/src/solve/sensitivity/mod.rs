@@ -295,13 +295,12 @@ impl Following<'_> {
     ) -> Result<Sensitivities, SensitivityError> {
         let start = self.plain.start()?;
         let scale = Scale::new(&self.request.tolerances(), start.len());
-        let is_own = self.request.method == Integrator::Dop853;
         let follower = |directions: &[Direction]| -> Result<Follower, SensitivityError> {
             let values: Vec<_> = directions.chunks(WIDTH).map(|few| sloped(self.values, few)).collect();
             let SideBySide { each, all } =
                 side_by_side(&values).unwrap_or_else(|| SideBySide::apart(model, &values))?;
             let sizes: Vec<f64> = directions.iter().map(|&of| self.size(of, &start)).collect();
-            let steps = Stepper::<V>::new(all, start.len(), is_own, (scale.clone(), &sizes));
+            let steps = Stepper::<V>::new(all, start.len(), is_own(self.request), (scale.clone(), &sizes));
             let plain = model.lifted(&sloped(self.values, &[]))?;
             Ok(Follower::new(each, plain, Box::new(steps), (directions, self.outputs), 0.0)?)
         };
@@ -337,6 +336,11 @@ impl Following<'_> {
         };
         if value == 0.0 { 1.0 } else { value.abs() }
     }
+}
+
+/// Whether the steps of a run are those of derivatives, which are then exact for them.
+fn is_own(request: &Request) -> bool {
+    request.method == Integrator::Dop853
 }
 
 /// The values of parameters with their slopes along these directions.

@@ -3,10 +3,10 @@
 //! In: the start of a step that a run has made, a rate that takes numbers with slopes. Out: the state at its end, with
 //! slopes. Method: DOP853 on the state with its slopes, which is the same method on S' = J S + df/dp with the exact J
 //! and df/dp of every stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is, but for
-//! a state at rest: its steps grow until they are unstable, which leaves it at rest but not its slopes. Then, and those of
-//! another method, they are divided into equal parts until the estimated error of the slopes is what is allowed: for
-//! a change of the direction by its whole size, what is allowed of the state (as in A. C. Hindmarsh and others, SUNDIALS,
-//! ACM TOMS 31 (2005), section 2.6).
+//! a state at rest: its steps grow until they are unstable, which leaves it at rest but not its slopes. A step of DOP853 in
+//! which slopes lose half of their digits is divided into equal parts; one of another method is until the estimated error of
+//! the slopes is what is allowed: for a change of the direction by its whole size, what is allowed of the state (as in A. C.
+//! Hindmarsh and others, SUNDIALS, ACM TOMS 31 (2005), section 2.6).
 //!
 //! A step has vectors of its own: those of the machine, in which nothing else is calculated, and it keeps the state in
 //! them from step to step. All around it is [`Gradient`]. It is compiled once for each kind of vectors, whatever the

@@ -103,6 +103,11 @@ pub enum RequestFault {
 }
 
 impl Integration {
+    /// By this method to this relative tolerance, told nothing else.
+    pub fn by(method: Integrator, rtol: f64) -> Self {
+        Self { method, rtol, ..Self::default() }
+    }
+
     /// What is asked of a run from 0 on of which only its end counts, at `t` (s).
     ///
     /// # Errors

@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use bg_model::integrator::Integrator;
-use bg_model::run::Request;
 use clap::{Args, ColorChoice, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
@@ -16,7 +15,7 @@ use super::sensitivity::SensitivityArguments;
 use super::sweep::SweepArguments;
 use crate::ask::hint;
 use crate::ask::request::Integration;
-use crate::ask::request::{RequestError, T_END};
+use crate::ask::request::T_END;
 use crate::show::picture::Level;
 use crate::show::tables::Part;
 use crate::show::trajectory::Form;
@@ -392,13 +391,6 @@ pub struct LinearizeArguments {
     /// before
     #[arg(long, value_name = "DIR", default_value = "out/linear")]
     pub out: PathBuf,
-}
-
-impl LinearizeArguments {
-    /// What is asked of the run to `t` (s).
-    pub fn request(&self, t: f64) -> Result<Request, RequestError> {
-        Integration { method: self.method, rtol: self.rtol, ..Integration::default() }.request_to(t)
-    }
 }
 
 #[derive(Debug, Subcommand)]

@@ -16,7 +16,7 @@ use super::sensitivity::unknown;
 use super::{InputError, ended};
 use crate::ask::inputs;
 use crate::ask::parameters::{Chosen, bounds, number};
-use crate::ask::request::{Integration, RequestError};
+use crate::ask::request::Integration;
 use crate::ask::scenes::Scene;
 use crate::files::json::rows;
 use crate::files::{FileError, RunFolder, console};
@@ -167,11 +167,6 @@ impl CampbellArguments {
             (None, Start::Equilibrium) => None,
         }
     }
-
-    /// What is asked of the run to `t` (s).
-    fn request(&self, t: f64) -> Result<Request, RequestError> {
-        Integration { method: self.method, rtol: self.rtol, ..Integration::default() }.request_to(t)
-    }
 }
 
 pub fn campbell(program: &Program, arguments: &CampbellArguments) -> Result<ExitCode, InputError> {
@@ -186,7 +181,9 @@ pub fn campbell(program: &Program, arguments: &CampbellArguments) -> Result<Exit
         bar.inc(1);
         true
     };
-    let found = followed(program, scene, &chosen, asked, (arguments.place(), &|t| arguments.request(t)), &told);
+    let integration = Integration::by(arguments.method, arguments.rtol);
+    let place_and_way: (_, To<'_>) = (arguments.place(), &|t| integration.request_to(t));
+    let found = followed(program, scene, &chosen, asked, place_and_way, &told);
     bar.finish_and_clear();
     let found = found?;
     let inputs = inputs::text(&named, [0.0, arguments.place().unwrap_or(0.0)]);

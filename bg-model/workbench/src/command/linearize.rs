@@ -9,7 +9,7 @@ use super::run::{chosen, follow, machine};
 use super::{InputError, ended};
 use crate::ask::inputs;
 use crate::ask::machine::Machine;
-use crate::ask::request::RequestError;
+use crate::ask::request::{Integration, RequestError};
 use crate::ask::scenes::Scene;
 use crate::files::{FileError, RunFolder, console};
 use crate::program::Program;
@@ -37,7 +37,8 @@ pub fn linearize(program: &Program, arguments: &LinearizeArguments) -> Result<Ex
     let scene = program.scene_called(&arguments.model.scene);
     let folder = RunFolder::claim(&arguments.out, &names(scene))?;
     let machine = machine(program, scene, &chosen)?;
-    let (space, sentence) = linearised(&*machine, arguments.at, &|t| arguments.request(t))?;
+    let integration = Integration::by(arguments.method, arguments.rtol);
+    let (space, sentence) = linearised(&*machine, arguments.at, &|t| integration.request_to(t))?;
     let inputs = inputs::text(&named, [0.0, arguments.at.unwrap_or(0.0)]);
     let text = format!("{sentence}\n{}{inputs}", space.table());
     let (written, faults) = write(folder, &space, &text);

@@ -51,7 +51,6 @@ struct Part {
 }
 
 /// What has been found so far.
-#[derive(Clone)]
 struct Found {
     weights: Vec<f64>,
     by_constants: Vec<f64>,
@@ -164,11 +163,11 @@ impl<'a> Back<'a> {
         self.follow_in_parts(step, is_whole, weights);
         while self.parts <= MOST_PARTS {
             let (parts, coarse) = (self.parts, self.found(weights));
-            self.restore(before.clone(), weights);
+            self.restore(&before, weights);
             self.parts = 2 * parts;
             if self.follow_in_parts(step, is_whole, weights) && self.are_near(&coarse.weights, weights, step.x) {
                 // In as many parts as the steps that follow.
-                self.restore(coarse, weights);
+                self.restore(&coarse, weights);
                 self.parts = parts;
                 (self.exact, self.since) = (self.length(step), 0);
                 return true;
@@ -186,9 +185,11 @@ impl<'a> Back<'a> {
         }
     }
 
-    fn restore(&mut self, found: Found, weights: &mut [f64]) {
+    fn restore(&mut self, found: &Found, weights: &mut [f64]) {
         weights.copy_from_slice(&found.weights);
-        (self.by_constants, self.lifted.by, self.integral) = (found.by_constants, found.by_parameters, found.integral);
+        self.by_constants.copy_from_slice(&found.by_constants);
+        self.lifted.by.copy_from_slice(&found.by_parameters);
+        self.integral = found.integral;
     }
 
     /// How long the parts of a step are, s.

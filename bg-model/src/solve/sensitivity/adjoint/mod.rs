@@ -17,7 +17,7 @@ use super::{Direction, SensitivityError};
 use crate::model::description::Description;
 use crate::model::dynamics::Machine;
 use crate::model::mechanism::Reversible;
-use crate::solve::integrator::{Integrator, Scale};
+use crate::solve::integrator::Scale;
 use crate::solve::run::{Interrupt, Request, Trajectory, observed};
 use crate::solve::simulation;
 use back::{Back, Crossing, add, dot};
@@ -125,8 +125,7 @@ pub fn gradient_within(
     let of = |chunk: &[Direction]| Ok(model.lifted(&super::sloped(&values, chunk))?);
     let lifted = Lifted::new(directions, of)?;
     let scale = record.scale.clone().unwrap_or_else(|| Scale::new(&request.tolerances(), machine.states()));
-    let is_own = request.method == Integrator::Dop853;
-    let back = Back::new((&*machine, &*sweeps, lifted), (scale, is_own), &objective.integrals);
+    let back = Back::new((&*machine, &*sweeps, lifted), (scale, super::is_own(&request)), &objective.integrals);
     let weights = vec![0.0; machine.states()];
     let mut backwards = Backwards { back, record: &record, model: &*machine, weights, interrupt: &request.interrupt };
     backwards.back_to_start()?;
