@@ -8,6 +8,7 @@
 use std::error::Error;
 
 use bg_model::assembly::AssemblyError;
+use bg_model::capability::Named;
 use bg_model::description::{Description, StateInfo, StateKind};
 use bg_model::dynamics::{Machine, shared};
 use bg_model::integrator::{Absolute, Dop853, Tolerances};
@@ -189,8 +190,14 @@ impl<Mo: System<f64, N, 1>, const N: usize> System<f64, N, 0> for Unswitched<Mo>
         self.0.project(t, &[false], x);
     }
 
+    fn named(&self) -> Option<&impl Named<f64, N, 0>> {
+        Some(self)
+    }
+}
+
+impl<Mo: System<f64, N, 1>, const N: usize> Named<f64, N, 0> for Unswitched<Mo> {
     fn state_name(&self, index: usize) -> &'static str {
-        self.0.state_name(index)
+        self.0.named().map_or("state", |named| named.state_name(index))
     }
 }
 

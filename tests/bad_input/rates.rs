@@ -1,6 +1,6 @@
 //! Rates, Jacobians and guards that break on the way.
 
-use bg_model::capability::Linearised;
+use bg_model::capability::{Linearised, Named};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::Settings;
 use bg_model::system::System;
@@ -94,12 +94,18 @@ impl System<f64, 2, 0> for Derivatives {
         *dx = SVector::from([x[1], -x[0]]);
     }
 
-    fn state_name(&self, index: usize) -> &'static str {
-        NAMES[index]
+    fn named(&self) -> Option<&impl Named<f64, 2, 0>> {
+        Some(self)
     }
 
     fn linearised(&self) -> Option<&impl Linearised<f64, 2, 0>> {
         Some(self)
+    }
+}
+
+impl Named<f64, 2, 0> for Derivatives {
+    fn state_name(&self, index: usize) -> &'static str {
+        NAMES[index]
     }
 }
 

@@ -5,6 +5,7 @@
 
 use std::rc::Rc;
 
+use bg_model::capability::Inlined;
 use bg_model::dynamics::Machine;
 use bg_model::input::Input;
 use bg_model::mechanism::{Mechanism, ModelVisitor};
@@ -86,8 +87,9 @@ where
         let (model, x, negative) = (&self.0, values::<N>(x), switches::<G>(negative));
         let mut rates = [SVector::repeat(f64::NAN); 3];
         model.rate(t, x, negative, &mut rates[0]);
-        model.always_inlined_rate(t, x, negative, &mut rates[1]);
-        model.paired_rate(t, x, negative, &mut rates[2]);
+        let inlined = model.inlined().expect("generated models have inlined rates");
+        inlined.rate(t, x, negative, &mut rates[1]);
+        inlined.paired_rate(t, x, negative, &mut rates[2]);
         rates.map(|rate| rate.as_slice().to_vec())
     }
 }

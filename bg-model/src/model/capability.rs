@@ -8,10 +8,86 @@ use core::ops::Range;
 
 use nalgebra::SVector;
 
+use crate::model::delay::States;
 use crate::model::description::StateInfo;
 use crate::model::holding::{Held, Stops};
 use crate::model::linear::{Field, Sparsity};
+use crate::model::origin::Origin;
 use crate::model::scalar::Scalar;
+
+/// A system that names what messages speak of.
+pub trait Named<S: Scalar, const N: usize, const G: usize> {
+    /// The name of state `index`.
+    fn state_name(&self, index: usize) -> &'static str;
+
+    /// The comparison of switch `index` and whose it is, such as ``if v < 0` of `valve``; by default none.
+    fn switch_name(&self, _index: usize) -> Option<&'static str> {
+        None
+    }
+
+    /// The first input or element, in the order of evaluation, whose value at time `t` (s) and state `x` is not finite;
+    /// asked for where a run stops. By default none is known.
+    fn not_finite(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G]) -> Option<Origin> {
+        None
+    }
+}
+
+/// A system whose rate is inlined where it is compiled for the vectors of a machine: where not every build is for that
+/// machine, operations of these vectors are calls elsewhere.
+pub trait Inlined<S: Scalar, const N: usize, const G: usize> {
+    /// Whether the rate is short enough to be inlined wherever a step calls it.
+    const IS_SHORT: bool;
+
+    /// [`System::rate`](crate::system::System::rate), inlined whatever its length.
+    fn rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);
+
+    /// The same in pairs of operations where that pays; by default without.
+    #[inline(always)]
+    fn paired_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
+        self.rate(t, x, negative, dx);
+    }
+
+    /// [`System::project`](crate::system::System::project), inlined whatever its length.
+    fn project(&self, t: S, negative: &[S::Switch; G], x: &mut SVector<S, N>);
+
+    /// Whether numbers of several runs side by side give in each place what a run gives by itself, and faster: not
+    /// where something is found by iteration, where an input is more than a number, or where the rate is too long.
+    fn runs_in_lanes(&self) -> bool {
+        Self::IS_SHORT
+    }
+}
+
+/// A system with states that [`System::project`](crate::system::System::project) sets to what they follow, by which it
+/// moves them far: what memories keep, samples hold and delays read.
+pub trait Memories<S: Scalar> {
+    /// These states, as memories keep and samples hold them.
+    fn states(&self) -> &'static [usize];
+
+    /// The switches of clocks: their guards are 1, and projection computes samples in their negative branches, in which
+    /// they are at the instants of [`Memories::instants`] only. None by default.
+    fn clocks(&self) -> &'static [usize] {
+        &[]
+    }
+
+    /// Writes of each clock the time from one instant to the next, s, above 0, and its first instant, s.
+    fn instants(&self, _instants: &mut [S]) {}
+
+    /// The delays of signals. Their clocks are among [`Memories::clocks`], with the time of the delay as the period: in
+    /// their negative branches projection reads the signals into the first of their states. None by default.
+    fn delays(&self) -> &'static [States] {
+        &[]
+    }
+}
+
+/// A system with loops in closed form for links which might come to a pose where they turn either way: nothing shows
+/// that the pivots of these loops keep away from zero.
+pub trait Turning<S: Scalar, const N: usize, const G: usize> {
+    /// The joints that close these loops.
+    fn joints(&self) -> &'static [&'static str];
+
+    /// Writes the pivots of the loops, m or m^2, into `pivots`. Each keeps the sign that it has at the start.
+    fn pivots(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], pivots: &mut [S]);
+}
 
 /// A system that knows its Jacobian.
 pub trait Linearised<S: Scalar, const N: usize, const G: usize> {
@@ -234,6 +310,37 @@ pub trait Reversed<S: Scalar, const N: usize, const G: usize, const M: usize> {
 /// A capability that is not there.
 #[derive(Clone, Copy, Debug)]
 pub enum Absent {}
+
+impl<S: Scalar, const N: usize, const G: usize> Named<S, N, G> for Absent {
+    fn state_name(&self, _: usize) -> &'static str {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize, const G: usize> Inlined<S, N, G> for Absent {
+    const IS_SHORT: bool = false;
+    fn rate(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut SVector<S, N>) {
+        match *self {}
+    }
+    fn project(&self, _: S, _: &[S::Switch; G], _: &mut SVector<S, N>) {
+        match *self {}
+    }
+}
+
+impl<S: Scalar> Memories<S> for Absent {
+    fn states(&self) -> &'static [usize] {
+        match *self {}
+    }
+}
+
+impl<S: Scalar, const N: usize, const G: usize> Turning<S, N, G> for Absent {
+    fn joints(&self) -> &'static [&'static str] {
+        match *self {}
+    }
+    fn pivots(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut [S]) {
+        match *self {}
+    }
+}
 
 impl<S: Scalar, const N: usize, const G: usize> Linearised<S, N, G> for Absent {
     fn jacobian(&self, _: S, _: &SVector<S, N>, _: &[S::Switch; G], _: &mut [S], _: &mut SVector<S, N>) {

@@ -13,7 +13,9 @@ use nalgebra::Complex;
 use super::system::System;
 use crate::model::capability::SeriesSize;
 #[cfg(doc)]
-use crate::model::capability::{Elimination, Impacts, Joints, Linearised, SecondOrder, Series, Storages};
+use crate::model::capability::{
+    Elimination, Impacts, Inlined, Joints, Linearised, Memories, Named, SecondOrder, Series, Storages, Turning,
+};
 use crate::model::clock::Clock;
 use crate::model::delay::Delay;
 use crate::model::description::StateInfo;
@@ -21,6 +23,9 @@ use crate::model::holding::{Held, Stops};
 use crate::model::linear::{Sparsity, differences};
 use crate::model::origin::Origin;
 use crate::model::scalar::Scalar;
+
+/// The name of the states of a system that names none.
+pub(crate) const UNNAMED: &str = "state";
 
 /// A system of ordinary differential equations: [`System`], over slices. States `x` and all that there is one of for
 /// each of them have [`Dynamics::states`] numbers, the branches `negative` of the switches [`Dynamics::switches`]. Only
@@ -43,17 +48,17 @@ pub trait Dynamics<S: Scalar = f64> {
     /// [`System::guards`].
     fn guards(&self, _t: S, _x: &[S], _negative: &[S::Switch], _guards: &mut [S]) {}
 
-    /// [`System::memories`].
+    /// [`Memories::states`].
     fn memories(&self) -> Vec<usize> {
         Vec::new()
     }
 
-    /// [`System::clocks`] with [`System::instants`], but those of delays.
+    /// [`Memories::clocks`] with [`Memories::instants`], but those of delays.
     fn clocks(&self) -> Vec<Clock<S>> {
         Vec::new()
     }
 
-    /// [`System::delays`] with [`System::instants`]. None by default.
+    /// [`Memories::delays`] with [`Memories::instants`]. None by default.
     fn delays(&self) -> Vec<Delay<S>> {
         Vec::new()
     }
@@ -71,32 +76,32 @@ pub trait Dynamics<S: Scalar = f64> {
         f64::INFINITY
     }
 
-    /// [`System::state_name`].
+    /// [`Named::state_name`].
     fn state_name(&self, _index: usize) -> &'static str {
-        "state"
+        UNNAMED
     }
 
-    /// [`System::switch_name`].
+    /// [`Named::switch_name`].
     fn switch_name(&self, _index: usize) -> Option<&'static str> {
         None
     }
 
-    /// [`System::runs_in_lanes`]; not by default.
+    /// [`Inlined::runs_in_lanes`]; not by default.
     fn runs_in_lanes(&self) -> bool {
         false
     }
 
-    /// [`System::not_finite`].
+    /// [`Named::not_finite`].
     fn not_finite(&self, _t: S, _x: &[S], _negative: &[S::Switch]) -> Option<Origin> {
         None
     }
 
-    /// [`System::turning`].
+    /// [`Turning::joints`].
     fn turning(&self) -> &'static [&'static str] {
         &[]
     }
 
-    /// [`System::pivots`].
+    /// [`Turning::pivots`].
     fn pivots(&self, _t: S, _x: &[S], _negative: &[S::Switch], _pivots: &mut [S]) {}
 
     /// [`Linearised::sparsity`]; full where the system does not know its Jacobian.

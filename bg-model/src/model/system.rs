@@ -7,11 +7,11 @@ use alloc::vec::Vec;
 use nalgebra::SVector;
 
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::{Absent, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, Storages};
-use crate::model::delay::States;
+use crate::model::capability::{
+    Absent, Impacts, Inlined, Joints, Linearised, Memories, Named, Reversed, SecondOrder, Series, Storages, Turning,
+};
 use crate::model::description::Description;
 use crate::model::holding::Redundancy;
-use crate::model::origin::Origin;
 use crate::model::scalar::Scalar;
 use crate::model::slices::Dynamics;
 
@@ -28,28 +28,6 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
     /// negative guard. Allocates nothing.
     fn rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>);
 
-    /// As [`System::rate`], inlined where it is compiled for the vectors of the machine, which methods call, but for
-    /// rates that are too long. By default there is no difference.
-    #[inline(always)]
-    fn inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
-        self.rate(t, x, negative, dx);
-    }
-
-    /// As [`System::rate`], inlined whatever its length: where numbers are vectors of a machine that not every build is
-    /// for, its operations are calls elsewhere. By default as [`System::inlined_rate`].
-    #[inline(always)]
-    fn always_inlined_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
-        self.inlined_rate(t, x, negative, dx);
-    }
-
-    /// As [`System::rate`], inlined whatever its length, in pairs of operations where that pays: for the one function
-    /// in which a rate that is too long for steps has the machine's vectors. By default as
-    /// [`System::always_inlined_rate`].
-    #[inline(always)]
-    fn paired_rate(&self, t: S, x: &SVector<S, N>, negative: &[S::Switch; G], dx: &mut SVector<S, N>) {
-        self.always_inlined_rate(t, x, negative, dx);
-    }
-
     /// Writes the guard of every switch into `guards`. Guard `k` below zero calls for branch `negative[k] = true`.
     fn guards(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G], _guards: &mut SVector<S, G>) {}
 
@@ -60,38 +38,10 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         [false; G]
     }
 
-    /// The states that [`System::project`] sets to what they follow, by which it moves them far: what memories keep
-    /// and samples hold.
-    /// None by default.
-    fn memories(&self) -> &'static [usize] {
-        &[]
-    }
-
-    /// The switches of clocks: their guards are 1, and [`System::project`] computes samples in their negative branches,
-    /// in which they are at the instants of [`System::instants`] only. None by default.
-    fn clocks(&self) -> &'static [usize] {
-        &[]
-    }
-
-    /// Writes of each clock the time from one instant to the next, s, above 0, and its first instant, s.
-    fn instants(&self, _instants: &mut [S]) {}
-
-    /// The delays of signals. Their clocks are among [`System::clocks`], with the time of the delay as the period: in
-    /// their negative branches [`System::project`] reads the signals into the first of their states. None by default.
-    fn delays(&self) -> &'static [States] {
-        &[]
-    }
-
     /// Moves state `x` at time `t` (s) back onto the invariants that rounding and truncation leave: orthogonal
     /// orientations, closed joints, flows that rigid joints keep at zero. Called once after each accepted step, before
     /// the rate at the new state is evaluated, and for each sample inside a step.
     fn project(&self, _t: S, _negative: &[S::Switch; G], _x: &mut SVector<S, N>) {}
-
-    /// As [`System::project`], inlined as [`System::always_inlined_rate`] is. By default there is no difference.
-    #[inline(always)]
-    fn inlined_project(&self, t: S, negative: &[S::Switch; G], x: &mut SVector<S, N>) {
-        self.project(t, negative, x);
-    }
 
     /// The first instant after `t` (s) at which a step must end, because the rate follows another law from there on: a
     /// kink of an input. The rate is continuous there. Infinity, as by default, where there is none.
@@ -99,39 +49,29 @@ pub trait System<S: Scalar, const N: usize, const G: usize> {
         f64::INFINITY
     }
 
-    /// Whether numbers of several runs side by side give in each place what a run gives by itself, and faster: not
-    /// where something is found by iteration, where an input is more than a number, or where the rate is too long to be
-    /// inlined.
-    fn runs_in_lanes(&self) -> bool {
-        true
+    /// Its names, for messages; by default it has none.
+    #[inline]
+    fn named(&self) -> Option<&impl Named<S, N, G>> {
+        None::<&Absent>
     }
 
-    /// The name of state `index`, for messages.
-    fn state_name(&self, _index: usize) -> &'static str {
-        "state"
+    /// Its rate and projection as they are inlined; by default neither is.
+    #[inline]
+    fn inlined(&self) -> Option<&impl Inlined<S, N, G>> {
+        None::<&Absent>
     }
 
-    /// The comparison of switch `index` and whose it is, such as ``if v < 0` of `valve``, for messages; by default
-    /// none.
-    fn switch_name(&self, _index: usize) -> Option<&'static str> {
-        None
+    /// The states that [`System::project`] sets: memories, samples of clocks, delays; none by default.
+    #[inline]
+    fn memories(&self) -> Option<&impl Memories<S>> {
+        None::<&Absent>
     }
 
-    /// The first input or element, in the order of evaluation, whose value at time `t` (s) and state `x` is not finite;
-    /// asked for where a run stops. By default none is known.
-    fn not_finite(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G]) -> Option<Origin> {
-        None
+    /// The loops in closed form that may come to a pose where links turn either way; none by default.
+    #[inline]
+    fn turning(&self) -> Option<&impl Turning<S, N, G>> {
+        None::<&Absent>
     }
-
-    /// The joints that close loops in closed form for links which might come to a pose where they turn either way:
-    /// nothing shows that the pivots of these loops keep away from zero. None by default.
-    fn turning(&self) -> &'static [&'static str] {
-        &[]
-    }
-
-    /// Writes the pivots of the loops of [`System::turning`], m or m^2, into `pivots`. Each keeps the
-    /// sign that it has at the start.
-    fn pivots(&self, _t: S, _x: &SVector<S, N>, _negative: &[S::Switch; G], _pivots: &mut [S]) {}
 
     /// The Jacobian; by default none is known, and implicit methods take differences of the rate.
     #[inline]

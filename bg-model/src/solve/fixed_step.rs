@@ -8,6 +8,7 @@
 use nalgebra::SVector;
 use thiserror::Error;
 
+use crate::model::capability::Memories;
 use crate::model::clock::{self, Clock};
 use crate::model::description::{Description, OperationCount};
 use crate::model::sampled;
@@ -119,7 +120,7 @@ impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G
         if system.first_branches().contains(&true) {
             return Err(Unfit::Sticking);
         }
-        if !system.delays().is_empty() {
+        if system.memories().is_some_and(|memories| !memories.delays().is_empty()) {
             return Err(Unfit::Delays);
         }
         let mut run = Self { t0, step, steps: 0, x: *start, negative: [false; G] };
@@ -171,13 +172,14 @@ impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G
 
     /// Computes the samples of clocks that have had an instant after `before` (s), at the end of the step.
     fn compute_samples(&self, system: &impl System<S, N, G>, before: f64, x: &mut SVector<S, N>) {
-        let clocks = system.clocks();
+        let Some(memories) = system.memories() else { return };
+        let clocks = memories.clocks();
         if clocks.is_empty() {
             return;
         }
         let zero = S::from_f64(0.0);
         let mut times = [[zero; 2]; G];
-        system.instants(times[..clocks.len()].as_flattened_mut());
+        memories.instants(times[..clocks.len()].as_flattened_mut());
         let (now, mut negative) = (self.time(), self.negative);
         let t = S::from_f64(now);
         let mut room = [SVector::<S, G>::repeat(zero); 2];
@@ -198,7 +200,7 @@ impl<S: Scalar<Switch = bool>, const N: usize, const G: usize> FixedStep<S, N, G
         );
         let mut projected = *x;
         system.project(t, &negative, &mut projected);
-        system.memories().iter().for_each(|&held| x[held] = projected[held]);
+        memories.states().iter().for_each(|&held| x[held] = projected[held]);
     }
 
     /// The branches that the signs of the guards call for at state `x`, where those of the last step were so.

@@ -1,6 +1,7 @@
 //! Problems with known solutions, and a recorder of what a run gives.
 #![allow(dead_code)] // Each test file uses some of them.
 
+use bg_model::capability::Named;
 use bg_model::integrator::{Absolute, Method, Tolerances};
 use bg_model::nalgebra::SVector;
 use bg_model::simulation::{Finish, Observer, Samples, Settings, Span, integrate};
@@ -41,6 +42,12 @@ where
     fn guards(&self, t: f64, x: &SVector<f64, N>, _: &[bool; G], guards: &mut SVector<f64, G>) {
         *guards = SVector::from(self.guards.map(|guard| guard(t, x.as_slice())));
     }
+    fn named(&self) -> Option<&impl Named<f64, N, G>> {
+        Some(self)
+    }
+}
+
+impl<F, const N: usize, const G: usize> Named<f64, N, G> for Flow<F, G> {
     fn state_name(&self, index: usize) -> &'static str {
         self.names.get(index).copied().unwrap_or("state")
     }

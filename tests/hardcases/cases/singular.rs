@@ -3,7 +3,7 @@
 //!
 //! In: nothing. Out: cases. But for van der Pol's the solutions are closed forms, so that errors are exact.
 
-use bg_model::capability::Linearised;
+use bg_model::capability::{Linearised, Named};
 use bg_model::nalgebra::SVector;
 use bg_model::system::System;
 
@@ -214,12 +214,18 @@ impl System<f64, 3, 0> for StiffJoint {
         *dy = SVector::from([y[1], force, -self.damper * (y[2] - libm::cos(2.0 * t)) - 2.0 * libm::sin(2.0 * t)]);
     }
 
-    fn state_name(&self, index: usize) -> &'static str {
-        ["x", "v", "w"][index]
+    fn named(&self) -> Option<&impl Named<f64, 3, 0>> {
+        Some(self)
     }
 
     fn linearised(&self) -> Option<&impl Linearised<f64, 3, 0>> {
         Some(self)
+    }
+}
+
+impl Named<f64, 3, 0> for StiffJoint {
+    fn state_name(&self, index: usize) -> &'static str {
+        ["x", "v", "w"][index]
     }
 }
 

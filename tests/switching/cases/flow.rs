@@ -3,6 +3,7 @@
 //! In: a rate, guards, the states' names. Out: a [`System`] of states and switches, its Jacobian by differences.
 //! The closures are boxed, so that problems of equal size are one type and the driver is compiled once for them.
 
+use bg_model::capability::Named;
 use bg_model::nalgebra::SVector;
 use bg_model::system::System;
 
@@ -39,6 +40,12 @@ impl<const N: usize, const G: usize> System<f64, N, G> for Flow<N, G> {
         *guards = SVector::from(self.guards.map(|guard| guard(t, x.as_slice())));
     }
 
+    fn named(&self) -> Option<&impl Named<f64, N, G>> {
+        Some(self)
+    }
+}
+
+impl<const N: usize, const G: usize> Named<f64, N, G> for Flow<N, G> {
     fn state_name(&self, index: usize) -> &'static str {
         self.names[index]
     }

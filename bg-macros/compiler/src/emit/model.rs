@@ -6,9 +6,12 @@
 mod capabilities;
 mod constants;
 mod impacts;
+mod inlined;
 mod iterations;
 mod linear;
 pub(super) mod mechanism;
+mod memories;
+mod named;
 mod names;
 mod outputs;
 mod parts;
@@ -19,6 +22,7 @@ mod shared;
 mod start;
 mod system;
 mod tabled;
+mod turning;
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;

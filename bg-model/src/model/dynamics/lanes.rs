@@ -7,6 +7,7 @@ use core::ops::Range;
 use nalgebra::SVector;
 use pulp::NullaryFnOnce;
 
+use super::inlined;
 use crate::model::capability::{Joints, SecondOrder};
 use crate::model::holding::Held;
 use crate::model::scalar::Scalar;
@@ -165,7 +166,7 @@ macro_rules! compiled_for_vectors {
 compiled_for_vectors! {
     Rate: System<N, G>, |asked| {
         let mut rate = SVector::from([asked.t; N]);
-        asked.of.always_inlined_rate(asked.t, &whole(asked.x), each(asked.negative), &mut rate);
+        inlined::rate(asked.of, asked.t, &whole(asked.x), each(asked.negative), &mut rate);
         asked.to.copy_from_slice(&rate.data.0[0]);
     };
     Guards: System<N, G>, |asked| {
@@ -175,7 +176,7 @@ compiled_for_vectors! {
     };
     Projection: System<N, G>, |asked| {
         let mut state = whole::<V, N>(asked.to);
-        asked.of.inlined_project(asked.t, each(asked.negative), &mut state);
+        inlined::project(asked.of, asked.t, each(asked.negative), &mut state);
         asked.to.copy_from_slice(&state.data.0[0]);
     };
     SecondDerivatives: SecondOrder<N, G>, |asked| {

@@ -9,8 +9,10 @@
 
 #[cfg(feature = "std")]
 mod apart;
+mod inlined;
 #[cfg(feature = "std")]
 mod lanes;
+mod memory;
 mod over;
 mod sloped;
 #[cfg(feature = "std")]

@@ -8,30 +8,21 @@ use core::ops::Deref;
 
 use nalgebra::{ArrayStorage, SVector};
 
-use super::{Dynamics, Machine};
+use super::{Dynamics, Machine, memory};
 use crate::model::assembly::AssemblyError;
-use crate::model::capability::{Impacts, Joints, Reversed, Storages};
-use crate::model::clock::{self, Clock};
-use crate::model::delay::{self, Delay};
+use crate::model::capability::{Impacts, Joints, Named, Reversed, Storages};
+use crate::model::clock::Clock;
+use crate::model::delay::Delay;
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::scalar::Scalar;
+use crate::model::slices::UNNAMED;
 use crate::model::system::{Model, Powers, System};
 
 /// A system or model in any scalar, borrowed or held by `H`, as starts, reactions and studies ask for it. Its functions
 /// are those that calculate with one number at a time, and hand over copies.
 #[derive(Clone, Copy, Debug)]
 pub struct Over<H, const N: usize, const G: usize, const M: usize>(pub H);
-
-impl<H: Deref, const N: usize, const G: usize, const M: usize> Over<H, N, G, M> {
-    /// The clocks, those of delays among them.
-    fn all_clocks<S: Scalar>(&self) -> Vec<Clock<S>>
-    where
-        H::Target: System<S, N, G> + Sized,
-    {
-        clock::listed(self.0.clocks(), &|instants| self.0.instants(instants))
-    }
-}
 
 impl<S, H, const N: usize, const G: usize, const M: usize> Dynamics<S> for Over<H, N, G, M>
 where
@@ -60,15 +51,15 @@ where
     }
 
     fn clocks(&self) -> Vec<Clock<S>> {
-        delay::without(self.all_clocks(), self.0.delays())
+        memory::clocks(self.0.memories())
     }
 
     fn delays(&self) -> Vec<Delay<S>> {
-        delay::listed(&self.all_clocks(), self.0.delays())
+        memory::delays(self.0.memories())
     }
 
     fn memories(&self) -> Vec<usize> {
-        self.0.memories().to_vec()
+        memory::states(self.0.memories())
     }
 
     fn first_branches(&self) -> Vec<bool> {
@@ -86,11 +77,11 @@ where
     }
 
     fn state_name(&self, index: usize) -> &'static str {
-        self.0.state_name(index)
+        self.0.named().map_or(UNNAMED, |named| named.state_name(index))
     }
 
     fn switch_name(&self, index: usize) -> Option<&'static str> {
-        self.0.switch_name(index)
+        self.0.named()?.switch_name(index)
     }
 
     fn held(&self) -> Option<Held> {

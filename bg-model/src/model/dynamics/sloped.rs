@@ -6,6 +6,7 @@
 use nalgebra::{ArrayStorage, SVector};
 use pulp::NullaryFnOnce;
 
+use super::inlined;
 use crate::model::scalar::slopes::Slopes;
 use crate::model::scalar::{GradientIn, Scalar};
 use crate::model::system::{System, switches};
@@ -59,7 +60,7 @@ where
         let (t, x) = (GradientIn::from_f64(self.t), state(self.x));
         let mut rates = x;
         if V::MUST_BE_INLINED {
-            self.system.always_inlined_rate(t, &x, self.negative, &mut rates);
+            inlined::rate(self.system, t, &x, self.negative, &mut rates);
         } else {
             self.system.rate(t, &x, self.negative, &mut rates);
         }
@@ -85,7 +86,7 @@ where
     fn call(self) {
         let (t, mut x) = (GradientIn::from_f64(self.t), state(self.x));
         if V::MUST_BE_INLINED {
-            self.system.inlined_project(t, self.negative, &mut x);
+            inlined::project(self.system, t, self.negative, &mut x);
         } else {
             self.system.project(t, self.negative, &mut x);
         }

@@ -10,18 +10,20 @@ use core::ops::{Deref, Range};
 use nalgebra::{Complex, SVector};
 use pulp::NullaryFnOnce;
 
-use super::{Dynamics, Machine};
+use super::{Dynamics, Machine, inlined, memory};
 use crate::model::assembly::AssemblyError;
 use crate::model::capability::{
-    Elimination, Impacts, Joints, Linearised, Reversed, SecondOrder, Series, SeriesSize, Storages,
+    Elimination, Impacts, Inlined, Joints, Linearised, Named, Reversed, SecondOrder, Series, SeriesSize, Storages,
+    Turning,
 };
-use crate::model::clock::{self, Clock};
-use crate::model::delay::{self, Delay};
+use crate::model::clock::Clock;
+use crate::model::delay::Delay;
 use crate::model::description::{Description, StateInfo};
 use crate::model::holding::{Held, Redundancy, Stops};
 use crate::model::linear::{Field, Sparsity, differences};
 use crate::model::origin::Origin;
 use crate::model::scalar::machine::Arch;
+use crate::model::slices::UNNAMED;
 use crate::model::system::{Model, Powers, System, switches, values, values_mut};
 
 /// A system, or a model with `M` outputs, whose numbers are in its type: borrowed, or held by `H`.
@@ -58,11 +60,6 @@ impl<H: Deref, const N: usize, const G: usize, const M: usize> Typed<H, N, G, M>
 where
     H::Target: System<f64, N, G> + Sized,
 {
-    /// The clocks, those of delays among them.
-    fn all_clocks(&self) -> Vec<Clock<f64>> {
-        clock::listed(self.of.clocks(), &|instants| self.of.instants(instants))
-    }
-
     /// The elimination made for the system's sparsity.
     #[inline(always)]
     fn elimination(&self) -> Option<&impl Elimination<f64, N>> {
@@ -105,15 +102,15 @@ where
     }
 
     fn clocks(&self) -> Vec<Clock<f64>> {
-        delay::without(self.all_clocks(), self.of.delays())
+        memory::clocks(self.of.memories())
     }
 
     fn delays(&self) -> Vec<Delay<f64>> {
-        delay::listed(&self.all_clocks(), self.of.delays())
+        memory::delays(self.of.memories())
     }
 
     fn memories(&self) -> Vec<usize> {
-        self.of.memories().to_vec()
+        memory::states(self.of.memories())
     }
 
     fn first_branches(&self) -> Vec<bool> {
@@ -129,27 +126,29 @@ where
     }
 
     fn runs_in_lanes(&self) -> bool {
-        self.of.runs_in_lanes()
+        self.of.inlined().is_none_or(Inlined::runs_in_lanes)
     }
 
     fn state_name(&self, index: usize) -> &'static str {
-        self.of.state_name(index)
+        self.of.named().map_or(UNNAMED, |named| named.state_name(index))
     }
 
     fn switch_name(&self, index: usize) -> Option<&'static str> {
-        self.of.switch_name(index)
+        self.of.named()?.switch_name(index)
     }
 
     fn not_finite(&self, t: f64, x: &[f64], negative: &[bool]) -> Option<Origin> {
-        self.of.not_finite(t, values(x), switches(negative))
+        self.of.named()?.not_finite(t, values(x), switches(negative))
     }
 
     fn turning(&self) -> &'static [&'static str] {
-        self.of.turning()
+        self.of.turning().map_or(&[], Turning::joints)
     }
 
     fn pivots(&self, t: f64, x: &[f64], negative: &[bool], pivots: &mut [f64]) {
-        self.of.pivots(t, values(x), switches(negative), pivots);
+        if let Some(turning) = self.of.turning() {
+            turning.pivots(t, values(x), switches(negative), pivots);
+        }
     }
 
     fn sparsity(&self) -> Sparsity {
@@ -333,7 +332,8 @@ impl<Sys: System<f64, N, G>, const N: usize, const G: usize> NullaryFnOnce for R
 
     #[inline(always)]
     fn call(self) {
-        self.system.inlined_rate(self.t, self.x, self.negative, self.dx);
+        let Self { system, t, x, negative, dx } = self;
+        inlined::where_short(system, system.inlined(), t, x, negative, dx);
     }
 }
 

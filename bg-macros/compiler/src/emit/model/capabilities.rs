@@ -28,14 +28,15 @@ impl Emission<'_> {
     /// The implementations of all capabilities that the model has.
     pub(super) fn capabilities(&self) -> TokenStream {
         let (linear, second_order, series, joints) = (self.linear(), self.second_order(), self.series(), self.joints());
-        let (impacts, storages) = (self.impacts(), self.storages());
-        quote! { #linear #second_order #series #joints #impacts #storages }
+        let (impacts, storages, memories) = (self.impacts(), self.storages(), self.memories());
+        let (inlined, named, turning) = (self.inlined(), self.named(), self.turning());
+        quote! { #inlined #named #memories #turning #linear #second_order #series #joints #impacts #storages }
     }
 
     /// The functions that hand them over.
     pub(super) fn accessors(&self) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
-        let Programs { second_order, holding, impacts, .. } = &self.model.programs;
+        let Programs { second_order, holding, impacts, pivots, .. } = &self.model.programs;
         let itself = quote!(Some(self));
         let linearised = accessor("linearised", &quote!(Linearised<S, #n, #g>), &itself);
         let second_order =
@@ -44,7 +45,13 @@ impl Emission<'_> {
         let joints = holding.as_ref().map(|_| accessor("joints", &quote!(Joints<S, #n, #g>), &itself));
         let impacts = impacts.as_ref().map(|_| accessor("impacts", &quote!(Impacts<S, #n, #g>), &itself));
         let storages = accessor("storages", &quote!(Storages<S, #n, #g>), &itself);
-        quote! { #linearised #second_order #series #joints #impacts #storages }
+        let named = accessor("named", &quote!(Named<S, #n, #g>), &itself);
+        let inlined = accessor("inlined", &quote!(Inlined<S, #n, #g>), &itself);
+        let memories = self.remembers().then(|| accessor("memories", &quote!(Memories<S>), &itself));
+        let turning = pivots.as_ref().map(|_| accessor("turning", &quote!(Turning<S, #n, #g>), &itself));
+        quote! {
+            #named #inlined #memories #turning #linearised #second_order #series #joints #impacts #storages
+        }
     }
 
     /// The model as its series: none is known where an input changes with time.

@@ -9,7 +9,7 @@ use super::super::elimination;
 use super::super::items::identifier;
 use super::super::routine::parsed;
 use super::capabilities::accessor;
-use super::system::Inlined;
+use super::inlined::Inlined;
 use super::{Emission, Shape};
 use crate::tables::{self, Tables};
 

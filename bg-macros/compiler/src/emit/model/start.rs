@@ -7,8 +7,8 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::super::items::identifier;
+use super::inlined::Inlined;
 use super::required::requirement;
-use super::system::Inlined;
 use super::tabled::{Asked, HOLDING};
 use super::{Emission, Shape, shared};
 use crate::program::{Program, Programs, Starting};

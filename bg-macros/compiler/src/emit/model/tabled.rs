@@ -9,7 +9,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::super::routine::parsed_each;
-use super::system::Inlined;
+use super::inlined::Inlined;
 use super::{Emission, Shape, names};
 use crate::expr::Symbol;
 use crate::program::batches::{Batches, Read, batches};
