@@ -11,6 +11,7 @@ use bg_compiler::pipeline::{self, Arranged};
 use bg_compiler::source::ast::TrackKind;
 use bg_compiler::source::{part, scene, syntax};
 use bg_compiler::system::equations::{Kind, StateEquations};
+use bg_compiler::system::stage::Closed;
 use bg_model::bond_graph;
 use bg_model::input::Input;
 use bg_model::nalgebra::SVector;
@@ -94,7 +95,7 @@ impl Random {
     }
 }
 
-fn compiled(text: &str) -> (CausalGraph, StateEquations) {
+fn compiled(text: &str) -> (CausalGraph, Closed) {
     attempt(text).unwrap_or_else(|faults| {
         panic!(
             "{}\n{text}",
@@ -103,11 +104,10 @@ fn compiled(text: &str) -> (CausalGraph, StateEquations) {
     })
 }
 
-fn attempt(text: &str) -> Staged<(CausalGraph, StateEquations)> {
+fn attempt(text: &str) -> Staged<(CausalGraph, Closed)> {
     let source = part::flatten(&syntax::parse(text.parse().expect("tokens"))?)?.source;
-    let Arranged { derived, mut equations, .. } = pipeline::arrange(&scene::variants(&source.graphs[0])?[0])?;
-    equations.close();
-    Ok((derived.causal, equations))
+    let Arranged { derived, equations, .. } = pipeline::arrange(&scene::variants(&source.graphs[0])?[0])?;
+    Ok((derived.causal, equations.close()))
 }
 
 /// A point at which expressions are evaluated.
@@ -160,7 +160,7 @@ impl Sample {
     }
 
     fn values(&self, equations: &StateEquations, roots: &[Id]) -> Vec<f64> {
-        let unknowns = vec![0.0; equations.guesses.len()];
+        let unknowns = vec![0.0; equations.assembly.guesses.len()];
         let environment = Environment {
             time: self.time,
             states: &self.states,
@@ -223,7 +223,11 @@ where
         check("guard", guards.as_slice(), equations.switches.iter().map(|switch| switch.guard).collect());
         let powers = model.powers(sample.time, &x, &negative);
         let found = [powers.supplied, powers.dissipated, model.stored_energy(sample.time, &x, &negative)];
-        check("energy", &found, vec![equations.supplied, equations.dissipated, equations.stored]);
+        check(
+            "energy",
+            &found,
+            vec![equations.balance.supplied, equations.balance.dissipated, equations.balance.stored],
+        );
         let mut projected = x;
         model.project(sample.time, &negative, &mut projected);
         let (indices, roots): (Vec<usize>, Vec<Id>) = equations.projections.iter().copied().unzip();
@@ -354,13 +358,13 @@ fn is_balanced(model: &str, causal: &CausalGraph, equations: &mut StateEquations
     for (index, state) in equations.states.iter().enumerate() {
         seeds.insert(Symbol::State(u32::try_from(index).expect("few states")), state.rate);
     }
-    let stored = equations.stored;
+    let stored = equations.balance.stored;
     let change = derivative(&mut equations.pool, &[stored], &seeds)[0];
     let mut sample = Sample::random(&causal.graph, equations, random);
     // The energy of a switched storage is that of the branch in which its state is.
     let guards: Vec<Id> = equations.switches.iter().map(|switch| switch.guard).collect();
     sample.negative = sample.values(equations, &guards).iter().map(|&guard| guard < 0.0).collect();
-    let roots = [change, equations.supplied, equations.dissipated];
+    let roots = [change, equations.balance.supplied, equations.balance.dissipated];
     let values = sample.values(equations, &roots);
     let [change, supplied, dissipated] = values[..] else { panic!("three values") };
     // The flow through a stiff spring and the power it carries cancel, so the scale is that of all bonds.
@@ -372,7 +376,7 @@ fn is_balanced(model: &str, causal: &CausalGraph, equations: &mut StateEquations
         })
         .sum();
     let error = (change - supplied + dissipated).abs();
-    let scale = scale + sample.values(equations, &[equations.stored])[0].abs();
+    let scale = scale + sample.values(equations, &[equations.balance.stored])[0].abs();
     // A transformer of 1e-45 makes powers of 1e255: what was added up to them is out of reach of their rounding.
     if !(error + scale).is_finite() || error.max(scale) > 1e100 {
         return false;

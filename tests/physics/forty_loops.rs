@@ -7,6 +7,7 @@ use bg_compiler::expr::{Environment, Id, evaluate};
 use bg_compiler::pipeline::{self, Arranged};
 use bg_compiler::source::{part, scene, syntax};
 use bg_compiler::system::equations::{Kind, StateEquations};
+use bg_compiler::system::stage::Closed;
 use bg_model::capability::Joints;
 use bg_model::holding::{Held, Slip};
 use bg_model::integrator::{Dop853, Tolerances};
@@ -50,7 +51,7 @@ graph Forty {
 
 /// The scene, interpreted.
 struct Forty {
-    equations: StateEquations,
+    equations: Closed,
     rates: Vec<Id>,
     entries: Vec<Id>,
     held: Held,
@@ -62,8 +63,8 @@ impl Forty {
         let source = syntax::parse(TEXT.parse().expect("tokens")).unwrap_or_else(|faults| panic!("{faults:?}"));
         let source = part::flatten(&source).unwrap_or_else(|faults| panic!("{faults:?}")).source;
         let variant = scene::variants(&source.graphs[0]).unwrap_or_else(|faults| panic!("{faults:?}")).remove(1);
-        let Arranged { mut equations, .. } = pipeline::arrange(&variant).unwrap_or_else(|faults| panic!("{faults:?}"));
-        equations.close();
+        let Arranged { equations, .. } = pipeline::arrange(&variant).unwrap_or_else(|faults| panic!("{faults:?}"));
+        let equations = equations.close();
         let rates = equations.states.iter().map(|state| state.rate).collect();
         let entries = equations.holding.entries(&equations.pool);
         let (held, kept) = held(&equations);

@@ -20,6 +20,7 @@ use crate::system::projection;
 use crate::system::reduce::{self, Report, expectation};
 use crate::system::second_order::{self, SecondOrder};
 use crate::system::sizes::{self, Sizes};
+use crate::system::stage::{Closed, Ordered, Solved};
 
 /// A graph's results as far as its state equations.
 #[derive(Debug)]
@@ -39,8 +40,8 @@ pub struct Arranged {
     pub derived: Derived,
     /// What became of its states; none of a literal graph, which keeps them all.
     pub reduction: Option<Report>,
-    /// The state equations that the model integrates, their reactions symbols.
-    pub equations: StateEquations,
+    /// The state equations that the model integrates.
+    pub equations: Ordered,
 }
 
 /// Every result of the stages of one model.
@@ -59,7 +60,7 @@ pub struct Compiled {
     /// What became of its states; none of a literal graph, which keeps them all.
     pub reduction: Option<Report>,
     /// The state equations that the model integrates.
-    pub equations: StateEquations,
+    pub equations: Closed,
     /// The derivatives of the rates.
     pub jacobian: Jacobian,
     /// The states of second order.
@@ -234,24 +235,21 @@ pub fn derive(graph: &Graph) -> Staged<Derived> {
     Ok(Derived { expanded, causal, equations })
 }
 
-/// The stages of one model as far as the state equations that it integrates. Reactions are symbols there until
-/// [`StateEquations::close`].
+/// The stages of one model as far as the state equations that it integrates.
 ///
 /// # Errors
 /// The faults of the first stage that has any.
 pub fn arrange(variant: &Variant) -> Staged<Arranged> {
     let derived = derive(&variant.graph)?;
-    let mut equations = derived.equations.clone();
-    let mut reduction = None;
-    if let Some(scene) = &variant.scene {
-        let (reduced, report) = reduced(scene, equations, true)?;
-        (equations, reduction) = (reduced, Some(report));
-    } else {
-        reduce::count_turns(&mut equations);
-        reduce::solve_reactions(&mut equations);
-    }
-    projection::complete(&mut equations);
-    second_order::arrange(&mut equations);
+    let equations = derived.equations.clone();
+    let (solved, reduction) = match &variant.scene {
+        Some(scene) => {
+            let (solved, report) = reduced(scene, equations, true)?;
+            (solved, Some(report))
+        }
+        None => (reduce::literal(equations), None),
+    };
+    let equations = second_order::order(projection::complete(solved));
     Ok(Arranged { derived, reduction, equations })
 }
 
@@ -261,9 +259,9 @@ pub fn arrange(variant: &Variant) -> Staged<Arranged> {
 /// The faults of the first stage that has any.
 pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let (source, is_scene, scenes) = (variant.graph.clone(), variant.scene.is_some(), variant.scenes.clone());
-    let Arranged { derived, reduction, mut equations } = arrange(variant)?;
+    let Arranged { derived, reduction, equations } = arrange(variant)?;
     let jacobian = jacobian::differentiate(&equations);
-    equations.close();
+    let mut equations = equations.close();
     let second_order = second_order::differentiate(&equations);
     let elimination = {
         let (states, unknowns, late) = (equations.states.len(), jacobian.unknowns.len(), jacobian.late);
@@ -290,12 +288,12 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
 
 /// The equations reduced to what a scene needs, with the report of it; whether that is to have the operations of a rate
 /// after each reduction.
-fn reduced(scene: &Scene, equations: StateEquations, is_counted: bool) -> Staged<(StateEquations, Report)> {
+fn reduced(scene: &Scene, equations: StateEquations, is_counted: bool) -> Staged<(Solved, Report)> {
     let wanted = expectation::wanted(scene, &equations)?;
-    let (mut equations, report) = reduce::for_scene(equations, &wanted, is_counted, &mut program::rate_operations);
+    let (mut solved, report) = reduce::for_scene(equations, &wanted, is_counted, &mut program::rate_operations);
     expectation::check(scene, &report)?;
-    equations.requirements.decide(&equations.parameters)?;
-    Ok((equations, report))
+    solved.decide_requirements()?;
+    Ok((solved, report))
 }
 
 #[cfg(test)]

@@ -164,12 +164,12 @@ fn equations_text(equations: &StateEquations) -> String {
     for output in &equations.outputs {
         let _ = writeln!(out, "output {} [{}] = {}", output.name, output.unit, show(output.value));
     }
-    for gap in &equations.gaps {
+    for gap in &equations.assembly.gaps {
         let _ = writeln!(out, "gap of {} {} [{}] = {}", gap.joint, gap.component, gap.unit, show(gap.value));
     }
-    let _ = writeln!(out, "stored = {}", show(equations.stored));
-    let _ = writeln!(out, "supplied = {}", show(equations.supplied));
-    let _ = writeln!(out, "dissipated = {}", show(equations.dissipated));
+    let _ = writeln!(out, "stored = {}", show(equations.balance.stored));
+    let _ = writeln!(out, "supplied = {}", show(equations.balance.supplied));
+    let _ = writeln!(out, "dissipated = {}", show(equations.balance.dissipated));
     out
 }
 

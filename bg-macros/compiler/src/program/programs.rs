@@ -12,6 +12,7 @@ use super::tape::{Tape, tape};
 use super::{Counts, Deferred, Program, Request, Routine, deferred, schedule};
 use crate::expr::{Id, Pool};
 use crate::system::equations::Iteration;
+use crate::system::stage::Closed;
 use crate::system::{Jacobian, SecondOrder, Sizes, StateEquations};
 
 /// Longer rates are not inlined where they are compiled for the machine's vectors: they would only fill the cache.
@@ -125,7 +126,7 @@ pub struct Starting {
 
 /// Schedules all functions of a model. The pools gain nodes of parameters and numbers.
 pub fn programs(
-    equations: &mut StateEquations,
+    equations: &mut Closed,
     jacobian: &Jacobian,
     second_order: &SecondOrder,
     sizes: &mut Sizes,
@@ -205,8 +206,8 @@ fn running(equations: &mut StateEquations) -> Running {
     let outputs = roots(&equations.outputs, |output| output.value);
     let projections = roots(&equations.projections, |&(_, id)| id);
     let settled = roots(&equations.settled, |&(_, id)| id);
-    let stored = [equations.stored];
-    let powers = [equations.supplied, equations.dissipated];
+    let stored = [equations.balance.stored];
+    let powers = [equations.balance.supplied, equations.balance.dissipated];
     let requests = [
         Request { name: "rate", roots: &rates },
         Request { name: "guards", roots: &guards },
@@ -249,17 +250,17 @@ fn impacts(equations: &StateEquations) -> Option<Program<1>> {
 }
 
 fn starting(equations: &mut StateEquations) -> Starting {
-    let gaps = roots(&equations.gaps, |gap| gap.value);
+    let gaps = roots(&equations.assembly.gaps, |gap| gap.value);
     let starts = roots(&equations.states, |state| state.start);
     let clocks = equations.switches.iter().filter_map(|switch| switch.clock);
     let clocks: Vec<Id> = clocks.flat_map(|clock| [clock.period, clock.first]).collect();
     let (pool, requirements) = (&mut equations.pool, &mut equations.requirements);
     Starting {
-        guesses: alone(pool, "guesses", &equations.guesses),
+        guesses: alone(pool, "guesses", &equations.assembly.guesses),
         gaps: alone(pool, "gaps", &gaps),
         gap_sizes: alone(&mut requirements.pool, "gap_sizes", &requirements.extents),
         start_state: alone(pool, "start_state", &starts),
-        sides: (!equations.sides.is_empty()).then(|| alone(pool, "sides", &equations.sides)),
+        sides: (!equations.assembly.sides.is_empty()).then(|| alone(pool, "sides", &equations.assembly.sides)),
         clocks: (!clocks.is_empty()).then(|| alone(pool, "clocks", &clocks)),
     }
 }

@@ -1,6 +1,6 @@
 //! The exact derivatives of the rates.
 //!
-//! In: [`StateEquations`]. Out: the places where df/dx can differ from zero, each with its expression, and df/dt, in a
+//! In: [`Ordered`] equations. Out: the places where df/dx can differ from zero, each with its expression, and df/dt, in a
 //! [`Jacobian`] with a pool of its own, so that no other function's order of operations depends on it. An entry that is
 //! identically zero has no place.
 //! Method: forward accumulation, one sweep for each column (Griewank & Walther 2008, Evaluating Derivatives, ch. 3).
@@ -18,6 +18,7 @@ use super::accelerated;
 use crate::expr::{Id, Pool, Symbol, derivative};
 use crate::system::equations::StateEquations;
 use crate::system::equations::solution::Solution;
+use crate::system::stage::Ordered;
 
 /// df/dx and df/dt as expressions.
 #[derive(Clone, Debug)]
@@ -69,7 +70,7 @@ impl Jacobian {
 
 /// Differentiates the rates. Switched laws are differentiated branch by branch: a switch is frozen.
 #[must_use]
-pub fn differentiate(equations: &StateEquations) -> Jacobian {
+pub fn differentiate(equations: &Ordered) -> Jacobian {
     accelerated::differentiate(equations).unwrap_or_else(|| by_entries(equations))
 }
 
@@ -156,16 +157,17 @@ mod tests {
     use crate::expr::{Environment, evaluate, partial, substitute};
     use crate::pipeline;
     use crate::source::syntax;
-    use crate::system::reduce::solve_reactions;
+    use crate::system::reduce;
+    use crate::system::stage::Solved;
 
     /// The literal equations with their reactions as symbols, and the derivatives.
     fn differentiated(statements: &str) -> (StateEquations, Jacobian) {
         let text = format!("graph G {{ {statements} }}");
         let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
-        let mut equations = pipeline::derive(&source.graphs[0]).expect("equations").equations;
-        solve_reactions(&mut equations);
+        let Solved(equations) = reduce::literal(pipeline::derive(&source.graphs[0]).expect("equations").equations);
+        let equations = Ordered(equations);
         let jacobian = differentiate(&equations);
-        (equations, jacobian)
+        (equations.0, jacobian)
     }
 
     /// A pendulum, whose pin is rigid.

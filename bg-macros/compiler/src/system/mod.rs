@@ -13,6 +13,7 @@ pub mod requirements;
 pub mod rigid;
 pub mod second_order;
 pub mod sizes;
+pub mod stage;
 mod stopped;
 mod value;
 
@@ -20,4 +21,5 @@ pub use equations::StateEquations;
 pub use jacobian::Jacobian;
 pub use second_order::SecondOrder;
 pub use sizes::Sizes;
+pub use stage::{Closed, Ordered, Projected, Solved};
 pub use value::Value;

@@ -12,13 +12,20 @@ use std::collections::BTreeMap;
 use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::equations::definite::Factors;
 use crate::system::equations::{Holding, Kind, StateEquations};
+use crate::system::stage::{Projected, Solved};
 
 /// D over the mobility, the squared sine of the angle between a row and those before it, at which the projection is
 /// damped by half.
 const NEAR: f64 = 1e-8;
 
 /// Adds the projection onto what rigid joints hold, unless Baumgarte's terms stand for it.
-pub fn complete(equations: &mut StateEquations) {
+#[must_use]
+pub fn complete(Solved(mut equations): Solved) -> Projected {
+    add(&mut equations);
+    Projected(equations)
+}
+
+fn add(equations: &mut StateEquations) {
     if equations.holding.rigid.is_empty() || equations.baumgarte.is_some() {
         return;
     }
@@ -92,7 +99,7 @@ mod tests {
     use crate::expr::{Environment, evaluate};
     use crate::pipeline;
     use crate::source::syntax;
-    use crate::system::reduce::solve_reactions;
+    use crate::system::reduce;
 
     /// A body whose point `top` is 0.5 m above its centre of mass.
     const BOB: &str = "ground { point O = [0, 0, 0]; point P = [0.3, 0, 1]; }
@@ -105,9 +112,8 @@ mod tests {
     fn completed(statements: &str, is_kept: bool) -> StateEquations {
         let text = format!("graph G {{ {statements} }}");
         let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
-        let mut equations = pipeline::derive(&source.graphs[0]).expect("equations").equations;
-        solve_reactions(&mut equations);
-        complete(&mut equations);
+        let solved = reduce::literal(pipeline::derive(&source.graphs[0]).expect("equations").equations);
+        let Projected(mut equations) = complete(solved);
         equations.close();
         let kept = equations.pool.number(f64::from(u8::from(is_kept)));
         equations.replace(&|symbol| matches!(symbol, Symbol::Kept(_)).then_some(kept));

@@ -1,6 +1,6 @@
 //! The states of second order and their second derivatives.
 //!
-//! In: [`StateEquations`]. Out: the same with their states arranged; then the displacements and orientations that
+//! In: [`Projected`] equations. Out: the same with their states [`Ordered`]; of these [`Closed`] the displacements and orientations that
 //! follow the momenta, each with d2x/dt2 as a function of the states and their rates, in a [`SecondOrder`] with a pool
 //! of its own. In a bond graph these are the kinematics: where things are follows from how they move. What a resistor
 //! moves, as a spring in series with a damper, is of first order.
@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use crate::expr::{Id, Node, Pool, Symbol, derivative};
 use crate::system::equations::{Kind, State, StateEquations};
+use crate::system::stage::{Closed, Ordered, Projected};
 
 /// Second derivatives as expressions.
 #[derive(Clone, Debug)]
@@ -27,7 +28,13 @@ pub struct SecondOrder {
 /// Puts states of second order side by side, and of these and the others together what is of one kind and unit. Sums
 /// over states then have one weight for many; what comes in twos, as x and y, stays at even places, for pairs, if odd
 /// numbers come after. Integrals that only watch come last.
-pub fn arrange(equations: &mut StateEquations) {
+#[must_use]
+pub fn order(Projected(mut equations): Projected) -> Ordered {
+    sort(&mut equations);
+    Ordered(equations)
+}
+
+fn sort(equations: &mut StateEquations) {
     let states = &equations.states;
     let is_second: Vec<bool> = (0..states.len()).map(|index| is_of_second_order(equations, index)).collect();
     let kind = |index: usize| (is_second[index], states[index].origin.kind(), &states[index].unit);
@@ -54,10 +61,10 @@ pub fn arrange(equations: &mut StateEquations) {
     equations.pool.renumber_states(&to);
 }
 
-/// Finds the states of second order, which [`arrange`] has put side by side, and differentiates their rates along the
+/// Finds the states of second order, which [`order`] has put side by side, and differentiates their rates along the
 /// flow.
 #[must_use]
-pub fn differentiate(equations: &StateEquations) -> SecondOrder {
+pub fn differentiate(equations: &Closed) -> SecondOrder {
     let mut pool = equations.pool.clone();
     let is_second = |index: &usize| is_of_second_order(equations, *index);
     let first = (0..equations.states.len()).find(is_second).unwrap_or(0);
@@ -135,20 +142,20 @@ mod tests {
         let values: BTreeMap<String, f64> =
             names(&equations).into_iter().zip((1..).map(|k| 0.3 * f64::from(k))).collect();
         let before = rates(&equations, &values);
-        arrange(&mut equations);
+        sort(&mut equations);
         let arranged = ["mass.p", "block.p", "spring.q", "stop.q", "twist.q", "flywheel.p", "relaxing.q", "w"];
         assert_eq!(names(&equations), arranged);
         assert_eq!(rates(&equations, &values), before);
-        let second = differentiate(&equations);
+        let second = differentiate(&Ordered(equations).close());
         assert_eq!(second.states, 2..5);
     }
 
     #[test]
     fn an_arrangement_stays_as_it_is() {
         let mut equations = equations();
-        arrange(&mut equations);
+        sort(&mut equations);
         let before = format!("{equations:?}");
-        arrange(&mut equations);
+        sort(&mut equations);
         assert!(format!("{equations:?}") == before);
     }
 }

@@ -1,11 +1,12 @@
 //! How large the states of storages are beside the energy in all of them.
 //!
-//! In: [`StateEquations`]. Out: the stored energy E as far as the model knows it, and d2E/dx2 by each momentum and
+//! In: [`Closed`] equations. Out: the stored energy E as far as the model knows it, and d2E/dx2 by each momentum and
 //! displacement, in [`Sizes`] with a pool of its own. A state x changes the energy by E where it changes by sqrt(2 E /
 //! (d2E/dx2)): that size depends neither on units nor on how large the machine is, and error norms measure by it.
 
 use crate::expr::{Id, Pool, Symbol, partial};
-use crate::system::equations::{Kind, StateEquations};
+use crate::system::equations::Kind;
+use crate::system::stage::Closed;
 
 /// The energy and its second derivatives.
 #[derive(Clone, Debug)]
@@ -20,15 +21,15 @@ pub struct Sizes {
 
 /// Differentiates the energy.
 #[must_use]
-pub fn differentiate(equations: &StateEquations) -> Sizes {
+pub fn differentiate(equations: &Closed) -> Sizes {
     let mut pool = equations.pool.clone();
-    let energy = pool.sum(&equations.energies);
+    let energy = pool.sum(&equations.balance.energies);
     let is_stored = |kind: Kind| matches!(kind, Kind::Momentum | Kind::Displacement);
     let states = equations.states.iter().map(|state| state.origin.kind()).enumerate();
     let curvatures = states
         .map(
             |(index, kind)| {
-                if is_stored(kind) { curvature(&mut pool, &equations.energies, index) } else { pool.zero() }
+                if is_stored(kind) { curvature(&mut pool, &equations.balance.energies, index) } else { pool.zero() }
             },
         )
         .collect();

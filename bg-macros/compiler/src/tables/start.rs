@@ -53,15 +53,15 @@ pub struct Requirement {
 #[must_use]
 pub fn start(model: &Compiled) -> Start {
     let equations = &model.equations;
-    let gaps = equations.gaps.iter();
+    let gaps = equations.assembly.gaps.iter();
     let gaps = gaps.map(|gap| Gap { joint: gap.joint.clone(), component: gap.component, unit: gap.unit.clone() });
     Start {
-        unknowns: equations.guesses.len(),
+        unknowns: equations.assembly.guesses.len(),
         gaps: gaps.collect(),
-        speeds: equations.speeds.clone(),
+        speeds: equations.assembly.speeds.clone(),
         required: requirements(model, true),
-        sides: equations.sides.len(),
-        impulse: equations.impulse,
+        sides: equations.assembly.sides.len(),
+        impulse: equations.assembly.impulse,
     }
 }
 

@@ -53,7 +53,7 @@ impl Emission<'_> {
         let Shape { n, g, .. } = &self.shape;
         let (reactions, values) = self.shown_reactions();
         let (iterated, found) = self.shown_found();
-        let sides = if self.model.equations.sides.is_empty() { quote!(&[]) } else { quote!(&self.sides) };
+        let sides = if self.model.equations.assembly.sides.is_empty() { quote!(&[]) } else { quote!(&self.sides) };
         let inputs: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         quote! {
             fn shown(

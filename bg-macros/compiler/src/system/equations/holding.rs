@@ -292,7 +292,7 @@ mod tests {
         for equations in both {
             let expected = [("pin", "in x"), ("pin", "in y"), ("pin", "about x"), ("pin", "about y")];
             assert_eq!(held(&equations), expected);
-            assert_eq!(equations.gaps.len(), 4);
+            assert_eq!(equations.assembly.gaps.len(), 4);
         }
     }
 
@@ -310,11 +310,11 @@ mod tests {
             close pin = x; rSe pin.hold = [0, 0, 0] at x";
         for equations in equations(&format!("{link};")) {
             assert_eq!(held(&equations)[1], ("pin.hold", "in y"));
-            assert_eq!(equations.gaps.len(), 6, "the sink closes its own gap");
+            assert_eq!(equations.assembly.gaps.len(), 6, "the sink closes its own gap");
         }
         for equations in equations(&format!("{link} of pin;")) {
             assert_eq!(held(&equations)[1], ("pin", "in y"));
-            assert_eq!(equations.gaps.len(), 3);
+            assert_eq!(equations.assembly.gaps.len(), 3);
         }
     }
 }

@@ -67,24 +67,14 @@ pub struct StateEquations {
     pub tracks: Vec<String>,
     /// States; `Symbol::State` counts them.
     pub states: Vec<State>,
-    /// First guess of each unknown of the assembly, from parameters; `Symbol::Unknown` counts them.
-    pub guesses: Vec<Id>,
-    /// The unknowns that are velocities, ascending; the others are of the pose.
-    pub speeds: Vec<usize>,
-    /// Gaps of the assembly, from parameters and unknowns.
-    pub gaps: Vec<Gap>,
+    /// From what the start is made.
+    pub assembly: Assembly,
     /// Switches.
     pub switches: Vec<Switch>,
     /// Scalar outputs.
     pub outputs: Vec<Output>,
-    /// Energy in all storages, J.
-    pub stored: Id,
-    /// Energy in each storage whose state the model knows, J.
-    pub energies: Vec<Id>,
-    /// Power of all sources, W.
-    pub supplied: Id,
-    /// Power of all resistors, W.
-    pub dissipated: Id,
+    /// Energies and powers.
+    pub balance: Balance,
     /// States of the pose with the expression that `project` gives them.
     pub projections: Vec<(usize, Id)>,
     /// Momenta with the expression that `project` gives them after that.
@@ -99,16 +89,12 @@ pub struct StateEquations {
     pub reactions: Vec<Reaction>,
     /// Those that are: symbols in the equations until these are closed.
     pub solution: Solution,
-    /// What the sides of roots have the signs of, from parameters and unknowns; `Symbol::Side` counts them.
-    pub sides: Vec<Id>,
     /// What joints hold.
     pub holding: Holding,
     /// Of bodies in the coordinates of joints the efforts that their accelerations take.
     pub inverse: Option<InverseDynamics>,
     /// What impacts are calculated from.
     pub impacts: Impacts,
-    /// Whether impulses of the rigid joints make the start velocities fit.
-    pub impulse: bool,
     /// The rate of Baumgarte's terms, 1/s; none where rigid joints are kept by projection.
     pub baumgarte: Option<f64>,
     /// What pictures show.
@@ -117,6 +103,34 @@ pub struct StateEquations {
     pub requirements: Requirements,
     /// The equations of the causal graph as text, one line each.
     pub texts: Vec<String>,
+}
+
+/// From what the start is made: unknowns, which may be of the pose or velocities, that close gaps.
+#[derive(Clone, Debug)]
+pub struct Assembly {
+    /// First guess of each unknown, from parameters; `Symbol::Unknown` counts them.
+    pub guesses: Vec<Id>,
+    /// The unknowns that are velocities, ascending; the others are of the pose.
+    pub speeds: Vec<usize>,
+    /// Gaps, from parameters and unknowns.
+    pub gaps: Vec<Gap>,
+    /// What the sides of roots have the signs of, from parameters and unknowns; `Symbol::Side` counts them.
+    pub sides: Vec<Id>,
+    /// Whether impulses of the rigid joints make the start velocities fit.
+    pub impulse: bool,
+}
+
+/// Energies, and powers over the boundary of a model: d(stored)/dt = supplied - dissipated.
+#[derive(Clone, Debug)]
+pub struct Balance {
+    /// Energy in all storages, J.
+    pub stored: Id,
+    /// Energy in each storage whose state the model knows, J.
+    pub energies: Vec<Id>,
+    /// Power of all sources, W.
+    pub supplied: Id,
+    /// Power of all resistors, W.
+    pub dissipated: Id,
 }
 
 /// A state.

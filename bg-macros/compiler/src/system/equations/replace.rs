@@ -13,8 +13,8 @@ impl StateEquations {
             roots.push(&mut state.start);
             roots.push(&mut state.rate);
         }
-        roots.extend(&mut self.guesses);
-        roots.extend(self.gaps.iter_mut().map(|gap| &mut gap.value));
+        roots.extend(&mut self.assembly.guesses);
+        roots.extend(self.assembly.gaps.iter_mut().map(|gap| &mut gap.value));
         for switch in &mut self.switches {
             roots.push(&mut switch.guard);
             roots.extend(switch.clock.iter_mut().flat_map(|clock| [&mut clock.period, &mut clock.first]));
@@ -24,11 +24,11 @@ impl StateEquations {
             roots.extend(reaction.slip.roots());
             roots.extend(reaction.switched.iter_mut().flat_map(|switched| [&mut switched.effort, &mut switched.acts]));
         }
-        roots.extend([&mut self.stored, &mut self.supplied, &mut self.dissipated]);
+        roots.extend([&mut self.balance.stored, &mut self.balance.supplied, &mut self.balance.dissipated]);
         for iteration in &mut self.iterations {
             roots.extend(iteration.roots());
         }
-        roots.extend(&mut self.sides);
+        roots.extend(&mut self.assembly.sides);
         roots.extend(self.projections.iter_mut().chain(&mut self.settled).map(|(_, id)| id));
         roots
     }
@@ -37,7 +37,7 @@ impl StateEquations {
     ///
     /// Where joints close loops, outputs and what is shown keep the symbols: there a model shares reactions that are
     /// not unique before it evaluates these.
-    pub fn close(&mut self) {
+    pub(in crate::system) fn close(&mut self) {
         let solution = std::mem::take(&mut self.solution);
         if solution.values.is_empty() {
             return;
@@ -79,7 +79,7 @@ impl StateEquations {
         for (law, value) in self.fallible.iter_mut().zip(after) {
             law.value = value;
         }
-        self.energies = substitute_switched(&mut pool, &self.energies, replace, branch);
+        self.balance.energies = substitute_switched(&mut pool, &self.balance.energies, replace, branch);
         // What is held and shown comes after, so that it has no influence on the order of the rates' nodes.
         self.solution.replace(&mut pool, replace, branch);
         self.holding.replace(&mut pool, replace, branch);

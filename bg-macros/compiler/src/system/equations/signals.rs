@@ -12,7 +12,10 @@ use super::iteration::Loop;
 use super::memo::{Entry, Memo};
 use super::solving::Pivot;
 use super::unknowns::{Unknown, Unknowns};
-use super::{FallibleLaw, Gap, Holding, Impacts, Kind, Origin, Output, State, StateEquations, Switch, storage, text};
+use super::{
+    Assembly, Balance, FallibleLaw, Gap, Holding, Impacts, Kind, Origin, Output, State, StateEquations, Switch,
+    storage, text,
+};
 use crate::expr::{Function, Id, Pool, Symbol, blended, magnitudes, substitute};
 use crate::fault::{Fault, Staged};
 use crate::graph::units::Dimension;
@@ -165,15 +168,10 @@ impl<'a> Signals<'a> {
             inputs: self.graph.inputs.clone(),
             tracks: self.graph.tracks.iter().map(|track| track.name.text.clone()).collect(),
             states: self.states,
-            guesses,
-            speeds,
-            gaps,
+            assembly: Assembly { guesses, speeds, gaps, sides: Vec::new(), impulse: self.graph.impulse },
             switches: self.switches,
             outputs,
-            stored,
-            energies,
-            supplied,
-            dissipated,
+            balance: Balance { stored, energies, supplied, dissipated },
             projections,
             delays: self.graph.delays.clone(),
             settled: Vec::new(),
@@ -181,11 +179,9 @@ impl<'a> Signals<'a> {
             iterations: Vec::new(),
             reactions,
             solution: Solution::default(),
-            sides: Vec::new(),
             holding,
             inverse: None,
             impacts: Impacts::default(),
-            impulse: self.graph.impulse,
             baumgarte: self.graph.baumgarte,
             shown,
             requirements,

@@ -16,7 +16,7 @@ fn values(statements: &str) -> (Vec<(f64, f64)>, f64) {
     let of = equations(statements);
     let mut roots: Vec<Id> =
         of.shown.bonds.iter().flatten().map(|variable| variable.as_ref().expect("known")[0]).collect();
-    roots.push(of.dissipated);
+    roots.push(of.balance.dissipated);
     let states = vec![6.0; of.states.len()];
     let values = evaluate(&of.pool, &roots, &Environment { states: &states, ..Environment::default() });
     let (bonds, dissipated) = values.split_at(values.len() - 1);
@@ -54,7 +54,7 @@ fn a_storage_takes_up_power_whichever_way_its_half_arrow_points() {
     for (arrow, sign) in [("j -> m", 1.0), ("m -> j", -1.0)] {
         let of = equations(&format!("1 j: translation; I m = 2; Se e = 5; e -> j; {arrow};"));
         let flow = of.shown.bonds[1][1].as_ref().expect("known");
-        let roots = [flow[0], of.states[0].rate, of.supplied];
+        let roots = [flow[0], of.states[0].rate, of.balance.supplied];
         let states = [6.0];
         let found = evaluate(&of.pool, &roots, &Environment { states: &states, ..Environment::default() });
         // The momentum is that of the half arrow's effort; against the arrow the flow is negative and so is the

@@ -21,7 +21,7 @@ use super::report::Fate;
 use super::{angle, closing, is_constant, speeds};
 use crate::expr::{Bounds, Function, Id, Pool, Symbol, bounds, derivative, partial, same_polynomial, substitute};
 use crate::graph::Parameter;
-use crate::system::equations::{FallibleLaw, Kind, StateEquations};
+use crate::system::equations::{Assembly, FallibleLaw, Kind, StateEquations};
 
 /// The largest part of a link's length that the rest of a gap may be proved to have.
 const FAR: f64 = 0.999;
@@ -230,7 +230,7 @@ impl Choice {
         may_vanish: bool,
     ) -> Id {
         let joint = equations.reactions[number].slip.joint.clone();
-        let StateEquations { pool, states, sides, .. } = equations;
+        let StateEquations { pool, states, assembly: Assembly { sides, .. }, .. } = equations;
         let start = substitute(pool, &[slope], &|symbol| symbol.as_state().map(|state| states[state].start))[0];
         let side = pool.symbol(Symbol::numbered(Symbol::Side, sides.len()));
         sides.push(start);

@@ -14,7 +14,7 @@ use super::speeds::of_kind;
 use super::zero::{ROUNDING, value, vanishes};
 use super::{angle, friction};
 use crate::expr::{Circles, Id, Pool, Symbol, derivative, partial, same_polynomial, substitute};
-use crate::system::equations::{Kind, Origin, StateEquations};
+use crate::system::equations::{Balance, Kind, Origin, StateEquations};
 
 /// Solved rows and what they determine.
 pub(super) struct Choice {
@@ -302,7 +302,7 @@ fn tracks(equations: &StateEquations, gone: &Images) -> BTreeMap<usize, Vec<usiz
 
 /// The derivatives of the energy by the momenta; none where they are not linear in these.
 fn velocities(equations: &mut StateEquations, momenta: &[usize]) -> Option<BTreeMap<usize, Id>> {
-    let StateEquations { pool, stored, .. } = equations;
+    let StateEquations { pool, balance: Balance { stored, .. }, .. } = equations;
     let symbols: Vec<Symbol> = momenta.iter().map(|&state| Symbol::state(state)).collect();
     let mut velocities = BTreeMap::new();
     for (&state, &symbol) in momenta.iter().zip(&symbols) {

@@ -88,12 +88,13 @@ fn quadratures(equations: &StateEquations) -> Vec<usize> {
 fn forget(equations: &mut StateEquations, known: &Known) {
     let unknown = equations.pool.number(f64::NAN);
     let pool = &equations.pool;
-    for quantity in [&mut equations.stored, &mut equations.supplied, &mut equations.dissipated] {
+    for quantity in [&mut equations.balance.stored, &mut equations.balance.supplied, &mut equations.balance.dissipated]
+    {
         if !known.has(pool, *quantity) {
             *quantity = unknown;
         }
     }
-    equations.energies.retain(|&energy| known.has(pool, energy));
+    equations.balance.energies.retain(|&energy| known.has(pool, energy));
     equations.fallible.retain(|law| known.has(pool, law.value));
     equations.iterations.retain(|iteration| iteration.residuals.iter().all(|&residual| known.has(pool, residual)));
     equations.shown.prune(pool, known);
@@ -186,7 +187,8 @@ mod tests {
     fn energies_that_are_not_known_are_not_a_number() {
         let number = |scene: &Scene| {
             let of = &scene.reduced;
-            [of.stored, of.supplied, of.dissipated].map(|id| of.pool.as_number(id).is_some_and(f64::is_nan))
+            [of.balance.stored, of.balance.supplied, of.balance.dissipated]
+                .map(|id| of.pool.as_number(id).is_some_and(f64::is_nan))
         };
         assert_eq!(number(&watching("v: m/s = a.flow")), [true, true, true]);
         assert_eq!(number(&watching("v: m/s = b.flow")), [false, false, false]);
@@ -199,7 +201,7 @@ mod tests {
             drive -> j -> r; Se push = 1; 1 k: translation; I m = 2; push -> k -> m; observe { v: m/s = k.flow; }";
         let scene = scene(graph, "");
         assert!(scene.reduced.switches.is_empty());
-        let dissipated = scene.reduced.pool.as_number(scene.reduced.dissipated);
+        let dissipated = scene.reduced.pool.as_number(scene.reduced.balance.dissipated);
         assert!(dissipated.is_some_and(f64::is_nan), "the power of `r` is that of one branch");
     }
 

@@ -25,8 +25,8 @@ mod zero;
 
 use crate::expr::{Branch, Id, Node, Pool, Symbol};
 use crate::system::equations::StateEquations;
+use crate::system::stage::Solved;
 
-pub use reaction::solve as solve_reactions;
 pub use report::{Count, Fate, Kept, Report};
 
 /// What the scene is to keep.
@@ -158,14 +158,14 @@ pub fn for_scene(
     wanted: &Wanted,
     is_counted: bool,
     operations: &mut Operations<'_>,
-) -> (StateEquations, Report) {
+) -> (Solved, Report) {
     let mut report = Report::new(&equations);
     let counter = &mut Counter { operations, is_told: is_counted };
     counter.note("literal", &mut equations, &mut report);
     run(&PARAMETERS, &mut equations, wanted, &mut report, counter);
     let before = may_be_jointed(&equations, wanted).then(|| (equations.clone(), report.clone()));
     let by_tree = match in_joint_coordinates(before.clone(), wanted, tree::Which::NotFlat, counter) {
-        Some(Jointed { equations, report, is_long: true }) => return (equations, report),
+        Some(Jointed { equations, report, is_long: true }) => return (Solved(equations), report),
         by_tree => by_tree,
     };
     run(&STATES, &mut equations, wanted, &mut report, counter);
@@ -182,7 +182,7 @@ pub fn for_scene(
     {
         (equations, report) = (by_tree.equations, by_tree.report);
     }
-    (equations, report)
+    (Solved(equations), report)
 }
 
 /// What is reduced with trees of joints by their coordinates.
@@ -235,11 +235,14 @@ fn in_joint_coordinates(
     Some(Jointed { equations, report, is_long })
 }
 
-/// Counts the turns of angles in a literal model, which has no proofs.
-pub fn count_turns(equations: &mut StateEquations) {
-    if turned::are_open(equations) {
-        turned::settle(equations, false);
+/// The equations of a literal model, which has no proofs: the turns of its angles counted, its reactions solved for.
+#[must_use]
+pub fn literal(mut equations: StateEquations) -> Solved {
+    if turned::are_open(&equations) {
+        turned::settle(&mut equations, false);
     }
+    reaction::solve(&mut equations);
+    Solved(equations)
 }
 
 /// Replaces parameters that no one tunes by their defaults; the others keep their order.

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use super::{Fate, Report, for_scene, solve_reactions};
+use super::{Fate, Report, for_scene, reaction};
 use crate::expr::{Environment, Id, Symbol, evaluate};
 use crate::fault::Faults;
 use crate::random::Random;
@@ -11,6 +11,7 @@ use crate::source::scene::{Variant, variants};
 use crate::source::syntax;
 use crate::system::equations::StateEquations;
 use crate::system::reduce::expectation::wanted;
+use crate::system::stage::Solved;
 use crate::{pipeline, program};
 
 mod dependent;
@@ -45,9 +46,9 @@ pub(super) fn attempt(statements: &str, clauses: &str) -> Result<Scene, Faults> 
     let derived = pipeline::derive(&variant.graph)?.equations;
     let wanted = wanted(scene, &derived)?;
     let mut literal = derived.clone();
-    solve_reactions(&mut literal);
+    reaction::solve(&mut literal);
     literal.close();
-    let (mut reduced, report) = for_scene(derived, &wanted, true, &mut program::rate_operations);
+    let (Solved(mut reduced), report) = for_scene(derived, &wanted, true, &mut program::rate_operations);
     reduced.close();
     Ok(Scene { literal, tuned: wanted.tuned, reduced, report })
 }
@@ -87,7 +88,7 @@ impl Scene {
             )
             .collect();
         let own: Vec<f64> = values.iter().zip(&self.tuned).filter(|(_, tuned)| **tuned).map(|(v, _)| *v).collect();
-        let unknowns: Vec<f64> = (0..self.literal.guesses.len()).map(|_| draw.number()).collect();
+        let unknowns: Vec<f64> = (0..self.literal.assembly.guesses.len()).map(|_| draw.number()).collect();
         let full = outputs(&self.literal, &values, &unknowns);
         let reduced = outputs(&self.reduced, &own, &unknowns);
         let names = |of: &StateEquations| of.outputs.iter().map(|output| output.name.clone()).collect::<Vec<_>>();
@@ -108,7 +109,7 @@ impl Scene {
     /// The outputs of both models over time, with the defaults.
     pub fn columns(&self) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
         let defaults = |of: &StateEquations| of.parameters.iter().map(|p| p.default).collect::<Vec<_>>();
-        let guesses = vec![0.0; self.literal.guesses.len()];
+        let guesses = vec![0.0; self.literal.assembly.guesses.len()];
         (
             outputs(&self.literal, &defaults(&self.literal), &guesses),
             outputs(&self.reduced, &defaults(&self.reduced), &guesses),
@@ -160,7 +161,7 @@ fn outputs(of: &StateEquations, parameters: &[f64], unknowns: &[f64]) -> Vec<Vec
     let values: Vec<Id> = of.outputs.iter().map(|output| output.value).collect();
     let projected: Vec<Id> = of.projections.iter().map(|&(_, id)| id).collect();
     let given = Environment { parameters, unknowns, ..Environment::default() };
-    let sides: Vec<f64> = evaluate(&of.pool, &of.sides, &given).into_iter().map(f64::signum).collect();
+    let sides: Vec<f64> = evaluate(&of.pool, &of.assembly.sides, &given).into_iter().map(f64::signum).collect();
     let at = |roots: &[Id], time: f64, states: &[f64], negative: &[bool]| {
         let inputs: Vec<f64> = (0..of.inputs.len()).map(|k| (2.0 * time + k as f64).sin()).collect();
         evaluate(&of.pool, roots, &Environment { time, states, inputs: &inputs, sides: &sides, negative, ..given })

@@ -10,7 +10,7 @@ fn compiled(statements: &str) -> Staged<Requirements> {
     let source = syntax::parse(text.parse().unwrap_or_else(|error| panic!("{error}\n{text}")))?;
     let mut last = Requirements::default();
     for variant in scene::variants(&source.graphs[0])? {
-        last = pipeline::compile(&variant)?.equations.requirements;
+        last = pipeline::compile(&variant)?.equations.requirements.clone();
     }
     Ok(last)
 }

@@ -8,12 +8,12 @@ use crate::pipeline;
 use crate::source::syntax;
 use crate::system::equations::StateEquations;
 use crate::system::reduce;
+use crate::system::stage::Solved;
 
 fn derived(statements: &str) -> Result<StateEquations, Vec<Fault>> {
     let text = format!("graph G {{\n{statements}\n}}");
     let source = syntax::parse(text.parse().expect("tokens"))?;
-    let mut equations = pipeline::derive(&source.graphs[0])?.equations;
-    reduce::solve_reactions(&mut equations);
+    let Solved(mut equations) = reduce::literal(pipeline::derive(&source.graphs[0])?.equations);
     equations.close();
     Ok(equations)
 }
@@ -38,10 +38,10 @@ fn values(equations: &mut StateEquations, given: &[(&str, f64)]) -> BTreeMap<Str
     let mut seeds: BTreeMap<Symbol, _> =
         (0..).map(Symbol::State).zip(equations.states.iter().map(|s| s.rate)).collect();
     seeds.insert(Symbol::Time, equations.pool.one());
-    let change = derivative(&mut equations.pool, &[equations.stored], &seeds)[0];
-    let powers = [(equations.supplied, 1.0), (equations.dissipated, -1.0), (change, -1.0)];
+    let change = derivative(&mut equations.pool, &[equations.balance.stored], &seeds)[0];
+    let powers = [(equations.balance.supplied, 1.0), (equations.balance.dissipated, -1.0), (change, -1.0)];
     roots.push(("balance".to_owned(), equations.pool.linear(0.0, &powers)));
-    roots.push(("stored".to_owned(), equations.stored));
+    roots.push(("stored".to_owned(), equations.balance.stored));
     let ids: Vec<_> = roots.iter().map(|(_, id)| *id).collect();
     let mut found = vec![0.0; equations.found()];
     let iterated: Vec<_> = equations.iterations.iter().flat_map(|iteration| iteration.values.clone()).collect();

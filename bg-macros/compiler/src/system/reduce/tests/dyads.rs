@@ -74,7 +74,7 @@ fn a_slider_crank_is_left_with_its_crank_on_either_side() {
             scene.report
         );
         assert_eq!(scene.words(&["link.orientation_12", "link.angular.p_z"]), ["closed slide", "closed slide"]);
-        assert!(scene.reduced.holding.rigid.is_empty() && scene.reduced.sides.len() == 1);
+        assert!(scene.reduced.holding.rigid.is_empty() && scene.reduced.assembly.sides.len() == 1);
         assert!(apart(&graph, &scene) < 1e-6, "{:e}", apart(&graph, &scene));
     }
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use super::bodies::Body;
 use super::numbers;
 use crate::expr::{Environment, Id, Pool, Symbol, evaluate, substitute};
-use crate::system::equations::StateEquations;
+use crate::system::equations::{Assembly, StateEquations};
 use crate::system::reduce::friction;
 
 /// What of a body's velocity the start looks for.
@@ -38,7 +38,7 @@ pub(super) struct Guessed {
 impl Guessed {
     pub fn of(equations: &StateEquations, bodies: &[Body], parameters: &[f64]) -> Self {
         let speeds: BTreeSet<Symbol> =
-            equations.speeds.iter().map(|&place| Symbol::numbered(Symbol::Unknown, place)).collect();
+            equations.assembly.speeds.iter().map(|&place| Symbol::numbered(Symbol::Unknown, place)).collect();
         let mut trial = Trial::new(equations, parameters);
         let sought = bodies.iter().map(|body| trial.sought(body, &speeds)).collect();
         let is_determined = speeds.is_empty() || trial.is_determined();
@@ -71,7 +71,7 @@ impl Guessed {
 
 /// A speed that is looked for from this guess on.
 pub(super) fn sought(equations: &mut StateEquations, speed: Id) -> Id {
-    let StateEquations { pool, guesses, speeds, .. } = equations;
+    let StateEquations { pool, assembly: Assembly { guesses, speeds, .. }, .. } = equations;
     let first = |symbol| if let Symbol::Unknown(place) = symbol { Some(guesses[place as usize]) } else { None };
     let guess = substitute(pool, &[speed], &first)[0];
     speeds.push(guesses.len());
@@ -82,7 +82,7 @@ pub(super) fn sought(equations: &mut StateEquations, speed: Id) -> Id {
 /// The values of the states at the start, with these of the parameters and the first guesses, `more` one with 1 more of it.
 fn starts(equations: &StateEquations, parameters: &[f64], more: Option<usize>) -> Vec<f64> {
     let given = Environment { parameters, ..Environment::default() };
-    let mut unknowns = evaluate(&equations.pool, &equations.guesses, &given);
+    let mut unknowns = evaluate(&equations.pool, &equations.assembly.guesses, &given);
     more.into_iter().for_each(|unknown| unknowns[unknown] += 1.0);
     let starts: Vec<Id> = equations.states.iter().map(|state| state.start).collect();
     evaluate(&equations.pool, &starts, &Environment { unknowns: &unknowns, ..given })
@@ -98,7 +98,7 @@ struct Trial<'a> {
 
 impl<'a> Trial<'a> {
     fn new(equations: &'a StateEquations, parameters: &'a [f64]) -> Self {
-        let trials = [None].into_iter().chain(equations.speeds.iter().copied().map(Some));
+        let trials = [None].into_iter().chain(equations.assembly.speeds.iter().copied().map(Some));
         let states = trials.map(|more| starts(equations, parameters, more)).collect();
         Self { equations, parameters, states }
     }

@@ -443,7 +443,7 @@ fn is_read(equations: &StateEquations, gone: &BTreeSet<Symbol>, bodies: &BTreeSe
     let others = equations.states.iter().enumerate().filter(|(state, _)| !bodies.contains(state));
     let rates = others.map(|(_, state)| state.rate);
     let guards = equations.switches.iter().map(|switch| switch.guard);
-    let powers = [equations.supplied, equations.dissipated, equations.stored];
+    let powers = [equations.balance.supplied, equations.balance.dissipated, equations.balance.stored];
     let loops = equations.iterations.iter().flat_map(|iteration| iteration.residuals.iter().copied());
     let laws = equations.fallible.iter().map(|law| law.value);
     let all = rates.chain(guards).chain(powers).chain(loops).chain(laws);

@@ -181,7 +181,7 @@ impl Motion {
             for (states, old, new) in [(&body.linear[..], by_momentum, fast), (&body.angular[..], by_angular, turning)]
             {
                 let [old, new] = [old, new].map(|id| pool.scale(0.5, id));
-                for energy in &mut equations.energies {
+                for energy in &mut equations.balance.energies {
                     let reads = pool.symbols(&[*energy]);
                     if states.iter().any(|&state| reads.contains(&Symbol::state(state)))
                         && same_polynomial(pool, *energy, old)

@@ -6,10 +6,11 @@ use std::fmt::Write;
 use crate::expr::{Environment, Id, Symbol, derivative, evaluate, substitute};
 use crate::program::{Request, schedule};
 use crate::random::Random;
-use crate::system::equations::{Origin, State, StateEquations};
+use crate::system::equations::{Origin, State};
 use crate::system::jacobian::{self, Jacobian};
-use crate::system::reduce::solve_reactions;
+use crate::system::reduce::reaction;
 use crate::system::reduce::tests::{Draw, Scene, scene};
+use crate::system::stage::Ordered;
 
 /// A state with all outputs of `bodies` bodies and `others`.
 fn observed(bodies: usize, others: &str) -> String {
@@ -54,12 +55,12 @@ fn agrees(scene: &Scene) {
     let seeds: BTreeMap<Symbol, Id> =
         reduced.states.iter().enumerate().map(|(k, state)| (Symbol::state(k), state.rate)).collect();
     let rates = derivative(&mut reduced.pool, &outputs, &seeds);
-    let roots: Vec<Id> = outputs.iter().chain(&rates).chain([&reduced.stored]).copied().collect();
+    let roots: Vec<Id> = outputs.iter().chain(&rates).chain([&reduced.balance.stored]).copied().collect();
     let values: Vec<Id> = literal.outputs.iter().map(|output| output.value).collect();
     let seeds: BTreeMap<Symbol, Id> =
         literal.states.iter().enumerate().map(|(k, state)| (Symbol::state(k), state.rate)).collect();
     let slopes = derivative(&mut literal.pool, &values, &seeds);
-    let others: Vec<Id> = values.iter().chain(&slopes).chain([&literal.stored]).copied().collect();
+    let others: Vec<Id> = values.iter().chain(&slopes).chain([&literal.balance.stored]).copied().collect();
     for _ in 0..4 {
         let mut states: Vec<f64> = reduced.states.iter().map(|_| draw.number()).collect();
         turn(&reduced.states, &mut states, &mut draw);
@@ -382,7 +383,7 @@ fn put(statements: &str) -> Scene {
     super::put(&mut reduced, &mut report, super::Which::NotFlat, &mut crate::program::rate_operations)
         .unwrap_or_else(|| panic!("no tree: {statements}"));
     for equations in [&mut literal, &mut reduced] {
-        solve_reactions(equations);
+        reaction::solve(equations);
         equations.close();
         let one = equations.pool.one();
         equations.replace(&|symbol| matches!(symbol, Symbol::Kept(_)).then_some(one));
@@ -503,7 +504,7 @@ fn guessed_velocities_start_as_those_of_the_bodies() {
     };
     let fixed = scene(&of("[0, 0.7, 0]", "[0.4, 0.7, 0]"), "tune {}");
     assert_eq!(fixed.left().len(), 4, "{}", fixed.report);
-    assert!(fixed.reduced.speeds.len() <= 6, "{:?}", fixed.reduced.speeds);
+    assert!(fixed.reduced.assembly.speeds.len() <= 6, "{:?}", fixed.reduced.assembly.speeds);
     let open = scene(&of("[0, 0.7, 0]", "guess"), "tune {}");
     assert!(open.left().len() > 4, "nothing determines the second speed: {:?}", open.left());
 }
@@ -522,7 +523,7 @@ fn pictures_show_what_is_known() {
 }
 
 /// The equations of a scene as they are differentiated: their reactions are symbols.
-fn arranged(statements: &str) -> StateEquations {
+fn arranged(statements: &str) -> Ordered {
     let text = format!("graph G {{ {statements} scenes only; scene Reduced {{ tune {{}} }} }}");
     let source = crate::source::syntax::parse(text.parse().expect("tokens")).unwrap_or_else(|_| panic!("{statements}"));
     let variant = crate::source::scene::variants(&source.graphs[0]).expect("scenes").remove(1);
