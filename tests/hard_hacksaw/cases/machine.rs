@@ -8,7 +8,7 @@ use bg_model::description::OutputInfo;
 use bg_model::input::Input;
 use bg_model::nalgebra::SVector;
 use bg_model::parameters::Parameters;
-use bg_model::system::{Model, System};
+use bg_model::system::Model;
 use hacksaw::mechanism::{Full, FullParameters, Paper, PaperParameters};
 
 use super::disturbed;
@@ -157,7 +157,7 @@ pub fn spatial(changes: Changes, disturbance: f64, scale: Scale) -> Box<dyn Foll
     let model = Full::new(changed::<FullParameters>(changes)).expect("in range");
     let mut start = model.start().expect("the mechanism closes");
     for (index, value) in start.iter_mut().enumerate() {
-        *value += disturbance * disturbed::direction(model.state_name(index));
+        *value += disturbance * disturbed::direction(model.description().states[index].name);
     }
     problem(model, start, &spatial_names(), scale)
 }

@@ -37,7 +37,7 @@ impl StateEquations {
     ///
     /// Where joints close loops, outputs and what is shown keep the symbols: there a model shares reactions that are
     /// not unique before it evaluates these.
-    pub(in crate::system) fn close(&mut self) {
+    pub(crate) fn close(&mut self) {
         let solution = std::mem::take(&mut self.solution);
         if solution.values.is_empty() {
             return;
