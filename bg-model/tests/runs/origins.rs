@@ -154,7 +154,7 @@ fn a_switch_is_named_by_its_comparison_and_its_law() {
     let side = elements.iter().position(|element| *element == "side").expect("a switch of the let");
     assert_eq!(names[side], "`if j.flow >= level` of `side`");
     assert_eq!(names[1 - side], "`if v > 3` of `friction`");
-    assert_eq!(relay.switch_name(side), Some(names[side]));
+    assert_eq!(relay.named().and_then(|named| named.switch_name(side)), Some(names[side]));
     let start = relay.start().expect("nothing to close");
     let message = stopped(&relay, &start, &mut Dop853::new());
     assert!(message.starts_with("`if j.flow >= level` of `side` changes its branch without end at t = "), "{message}");
