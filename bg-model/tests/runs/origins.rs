@@ -1,6 +1,8 @@
 //! A run that stops at a number which is not finite says which input or law it comes from, in the words of the description.
 
 use bg_model::bond_graph;
+use bg_model::capability::Named;
+use bg_model::failure::Origin;
 use bg_model::input::Input;
 use bg_model::integrator::{Auto, Dop853, Method, Radau9, Rk4, Rodas5p};
 use bg_model::nalgebra::SVector;
@@ -99,20 +101,30 @@ fn the_law_is_named_that_a_number_is_not_finite_by() {
     assert!(message.starts_with("MR `orifice` gives NaN"), "{message}");
     // By way of a `let`, at a time.
     let model = tank(30.0.into());
-    let origin = model.not_finite(4.0, &start, &[false; Tank::SWITCHES]).expect("a quotient by zero");
+    let origin = origin(&model, 4.0, &start, &[false; Tank::SWITCHES]).expect("a quotient by zero");
     assert_eq!((origin.kind, origin.name, origin.value.is_infinite()), ("MR", "orifice", true));
+}
+
+/// What is not finite, as the model names it.
+fn origin<const N: usize, const G: usize>(
+    of: &impl System<f64, N, G>,
+    t: f64,
+    x: &SVector<f64, N>,
+    negative: &[bool; G],
+) -> Option<Origin> {
+    of.named()?.not_finite(t, x, negative)
 }
 
 #[test]
 fn the_first_law_is_named_and_none_in_the_other_branch() {
     let model = tank(1.0.into());
     let empty = SVector::from([-1.0]);
-    let name = |negative| model.not_finite(0.0, &empty, &negative).map(|origin| origin.name);
+    let name = |negative| origin(&model, 0.0, &empty, &negative).map(|origin| origin.name);
     // A law in its other branch takes no logarithm, and no output counts.
     assert_eq!(name([false, false]), Some("orifice"));
     let full = SVector::from([1.0]);
     for negative in [[false, false], [true, true]] {
-        assert_eq!(model.not_finite(0.0, &full, &negative), None);
+        assert_eq!(origin(&model, 0.0, &full, &negative), None);
     }
 }
 
@@ -129,7 +141,7 @@ fn a_spring_of_no_length_is_named() {
 fn a_model_without_such_laws_knows_of_none() {
     let model = Mass::new(MassParameters::default()).expect("in range");
     let start = model.start().expect("nothing to close");
-    assert_eq!(model.not_finite(0.0, &start.map(|_| f64::NAN), &[]), None);
+    assert_eq!(origin(&model, 0.0, &start.map(|_| f64::NAN), &[]), None);
     let message = stopped(&model, &start.map(|_| f64::MAX), &mut Dop853::new());
     assert!(message.starts_with("the rate of `m.p` is "), "{message}");
 }

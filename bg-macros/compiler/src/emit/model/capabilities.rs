@@ -75,7 +75,9 @@ impl Emission<'_> {
                     DESCRIPTION.states
                 }
                 #[cold]
-                fn energy(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], curvatures: &mut SVector<S, #n>) -> S {
+                fn energy(
+                    &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], curvatures: &mut SVector<S, #n>,
+                ) -> S {
                     let [energy, of_states @ ..] = #values;
                     curvatures.data.0 = [of_states];
                     energy
@@ -180,7 +182,9 @@ impl Emission<'_> {
                     Some(::bg_model::capability::Operations { #operations })
                 }
                 #inline
-                fn expand(&self, t: S, h: S, negative: &[S::Switch; #g], rows: &mut [S], series: &mut [SVector<S, #n>]) {
+                fn expand(
+                    &self, t: S, h: S, negative: &[S::Switch; #g], rows: &mut [S], series: &mut [SVector<S, #n>],
+                ) {
                     #body
                 }
             }

@@ -27,7 +27,8 @@ impl Emission<'_> {
             impl<S: Scalar> ::bg_model::capability::Impacts<S, #n, #g> for Model<S> {
                 fn stops(&self) -> ::bg_model::holding::Stops {
                     ::bg_model::holding::Stops {
-                        rigid: #rigid, closing: #closing, stops: &[#(#stops),*], moved: &[#(#moved),*], integrals: &[#(#integrals),*],
+                        rigid: #rigid, closing: #closing, stops: &[#(#stops),*], moved: &[#(#moved),*],
+                        integrals: &[#(#integrals),*],
                     }
                 }
                 #kept

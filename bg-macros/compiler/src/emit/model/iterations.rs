@@ -16,7 +16,8 @@ impl Emission<'_> {
         }
         let found = quote! {
             let switches = negative.map(S::Switch::from);
-            let found = self.found(S::from_f64(t), &x.map(S::from_f64).data.0[0], &switches).map(|found| found.to_f64());
+            let found = self.found(S::from_f64(t), &x.map(S::from_f64).data.0[0], &switches);
+            let found = found.map(|found| found.to_f64());
         };
         (Some(found), quote!(&found))
     }
@@ -46,7 +47,9 @@ impl Emission<'_> {
         (count > 0).then(|| {
             quote! {
                 impl<S: Scalar> Model<S> {
-                    fn loops(&self, t: S, x: &[S; #n], negative: &[S::Switch; #g], found: &[S; #count]) -> [S; #length] {
+                    fn loops(
+                        &self, t: S, x: &[S; #n], negative: &[S::Switch; #g], found: &[S; #count],
+                    ) -> [S; #length] {
                         let c = &self.constants;
                         #inputs
                         #states

@@ -48,7 +48,8 @@ impl Emission<'_> {
                 }
                 #[inline(never)]
                 fn jacobian(
-                    &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S], slope: &mut SVector<S, #n>,
+                    &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], entries: &mut [S],
+                    slope: &mut SVector<S, #n>,
                 ) {
                     let entries: &mut [S; #count] = entries.try_into().expect("one entry for each place");
                     #body

@@ -57,7 +57,8 @@ impl Emission<'_> {
         let inputs: Vec<_> = self.model.equations.inputs.iter().map(|input| identifier(&input.name.text)).collect();
         quote! {
             fn shown(
-                &self, t: f64, x: &SVector<f64, #n>, negative: &[bool; #g], values: &mut ::bg_model::__private::vec::Vec<f64>,
+                &self, t: f64, x: &SVector<f64, #n>, negative: &[bool; #g],
+                values: &mut ::bg_model::__private::vec::Vec<f64>,
             ) {
                 #reactions
                 #iterated

@@ -22,7 +22,8 @@ impl Emission<'_> {
                     &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], weights: &SVector<S, #m>,
                     by_state: &mut SVector<S, #n>, by_constants: &mut [S],
                 ) -> bool {
-                    let by_constants: &mut [S; #constants] = by_constants.try_into().expect("a number for each constant");
+                    let by_constants: &mut [S; #constants] =
+                        by_constants.try_into().expect("a number for each constant");
                     self.sweep_outputs(t, x, negative, &weights.data.0[0], by_state, by_constants);
                     true
                 }
@@ -45,7 +46,8 @@ impl Emission<'_> {
                     &self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], weights: &SVector<S, #n>,
                     by_state: &mut SVector<S, #n>, by_constants: &mut [S],
                 ) {
-                    let by_constants: &mut [S; #constants] = by_constants.try_into().expect("a number for each constant");
+                    let by_constants: &mut [S; #constants] =
+                        by_constants.try_into().expect("a number for each constant");
                     self.sweep_rate(t, x, negative, &weights.data.0[0], by_state, by_constants);
                 }
                 #project

@@ -157,8 +157,10 @@ impl Emission<'_> {
         quote! {
             impl<S: Scalar> ::bg_model::capability::Joints<S, #n, #g> for Model<S> {
                 fn held(&self) -> ::bg_model::holding::Held {
-                    ::bg_model::holding::Held { rigid: &[#(#rigid,)*], compliant: &[#(#compliant,)*], moved: &[#(#moved),*], pose: &[#(#pose),*],
-                        turning: &[#(#turning),*], closing: #closing, is_driven: #is_driven, }
+                    ::bg_model::holding::Held {
+                        rigid: &[#(#rigid,)*], compliant: &[#(#compliant,)*], moved: &[#(#moved),*], pose: &[#(#pose),*],
+                        turning: &[#(#turning),*], closing: #closing, is_driven: #is_driven,
+                    }
                 }
                 #kept
                 #hold
