@@ -133,7 +133,7 @@ impl Blueprint {
         let statics = statics(&tables);
         let damped = tables::damping(&model);
         let Compiled { equations, programs, elimination, .. } = model;
-        let (rows, states) = (Rows(equations.solution.multipliers.into()), equations.states.len());
+        let (rows, states) = (Rows(equations.solution.multipliers.as_slice().into()), equations.states.len());
         Self {
             statics,
             programs: codes(programs, &rows, states, damped, !tables.loops.is_empty()),
