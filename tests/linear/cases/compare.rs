@@ -206,7 +206,8 @@ fn found(mut equations: StateEquations, states: &[State]) -> Vec<f64> {
     let rates: Vec<Id> = equations.states.iter().map(|state| state.rate).collect();
     let rates_of_states = (0..).map(Symbol::State).zip(rates.iter().copied());
     let seeds = rates_of_states.chain([(Symbol::Time, equations.pool.one())]).collect();
-    let (stored, supplied, dissipated) = (equations.balance.stored, equations.balance.supplied, equations.balance.dissipated);
+    let (stored, supplied, dissipated) =
+        (equations.balance.stored, equations.balance.supplied, equations.balance.dissipated);
     let change = derivative(&mut equations.pool, &[stored], &seeds)[0];
     let balance = equations.pool.linear(0.0, &[(supplied, 1.0), (dissipated, -1.0), (change, -1.0)]);
     let bonds = equations.shown.bonds.into_iter().flatten().flatten().flatten();

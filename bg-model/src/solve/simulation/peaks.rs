@@ -115,12 +115,21 @@ struct Window {
     largest: Vec<f64>,
     /// The instants of both, s.
     at: Vec<[f64; 2]>,
+    /// What is below this, or above that, leads beyond what is known.
+    floor: Vec<f64>,
+    ceiling: Vec<f64>,
 }
 
 impl Window {
     fn new([from, to]: [f64; 2], outputs: usize) -> Self {
         let [least, largest] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| vec![end; outputs]);
-        Self { from, to, least, largest, at: vec![[from; 2]; outputs] }
+        let (floor, ceiling) = (least.clone(), largest.clone());
+        Self { from, to, least, largest, at: vec![[from; 2]; outputs], floor, ceiling }
+    }
+
+    /// Whether a time from `from` up to `to` (s) has a part in it.
+    fn meets(&self, from: f64, to: f64) -> bool {
+        to >= self.from && from <= self.to
     }
 
     /// Takes values at `t` (s) into account.
@@ -128,27 +137,39 @@ impl Window {
         if t < self.from || t > self.to {
             return;
         }
-        let known = self.least.iter_mut().zip(&mut self.largest).zip(&mut self.at);
-        for (&value, ((least, largest), at)) in values.iter().zip(known) {
-            if value < *least && value.is_finite() {
-                (*least, at[0]) = (value, t);
+        // Most values are none. Without a choice for each of them several are looked at at once.
+        let known = self.least.iter().zip(&self.largest);
+        let outside = values.iter().zip(known).map(|(&value, (&least, &largest))| (value < least) | (value > largest));
+        if !outside.fold(false, |any, is_outside| any | is_outside) {
+            return;
+        }
+        for (index, &value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
+            let is_least = value < self.least[index];
+            let is_largest = value > self.largest[index];
+            if is_least {
+                (self.least[index], self.at[index][0]) = (value, t);
             }
-            if value > *largest && value.is_finite() {
-                (*largest, at[1]) = (value, t);
+            if is_largest {
+                (self.largest[index], self.at[index][1]) = (value, t);
+            }
+            if is_least || is_largest {
+                self.bound(index);
             }
         }
     }
 
-    /// Whether these values of an output lead beyond what is known: down, and up. Rounding moves a constant by less than counts.
-    fn leads(&self, index: usize, [least, largest]: [f64; 2]) -> [bool; 2] {
+    /// Sets from where on an output leads beyond what is known. Rounding moves a constant by less than counts.
+    fn bound(&mut self, index: usize) {
         const OF_RANGE: f64 = 1e-9;
         const OF_SIZE: f64 = 1e-6;
         let [low, high] = [self.least[index], self.largest[index]];
-        if low > high {
-            return [true; 2];
-        }
         let margin = OF_RANGE * (high - low).max(OF_SIZE * low.abs().max(high.abs()));
-        [least < low - margin, largest > high + margin]
+        (self.floor[index], self.ceiling[index]) = (low - margin, high + margin);
+    }
+
+    /// Whether these values of an output lead beyond what is known: down, and up.
+    fn leads(&self, index: usize, [least, largest]: [f64; 2]) -> [bool; 2] {
+        [least < self.floor[index], largest > self.ceiling[index]]
     }
 
     /// The peaks of an output; none where no value is known.
@@ -202,11 +223,10 @@ impl Past {
         self.known = 2;
     }
 
-    /// By how much an output bends in a part of `h` (s) that changes it by `change`: that less what it would change by as in
-    /// the part before, where it changed by `earlier`.
-    fn bend(&self, earlier: f64, h: f64, change: f64) -> f64 {
-        let expected = if self.known < 2 { 0.0 } else { earlier * (h / self.h) };
-        (change - expected).abs()
+    /// The values at the start of a part, those before them, and by how much a change since then is multiplied to be that
+    /// which is expected in a part of `h` (s): none where none is known.
+    fn expected(&self, h: f64) -> (&[f64], &[f64], f64) {
+        if self.known < 2 { (&self.values, &self.values, 0.0) } else { (&self.values, &self.before, h / self.h) }
     }
 }
 
@@ -277,19 +297,23 @@ impl<'a> PeakMonitor<'a> {
     /// Whether an output may turn in a part of `h` (s) that ends at `t` (s) in `to`, beyond what is known; marks which do.
     fn may_turn(&mut self, t: f64, h: f64) -> bool {
         let Self { windows, past, to, may_turn, .. } = self;
+        may_turn.fill(false);
+        let (values, before, ratio) = past.expected(h);
         let mut any = false;
-        let ends = past.values.iter().zip(&past.before).zip(to.iter());
-        for (index, (marked, ((&from, &before), &to))) in may_turn.iter_mut().zip(ends).enumerate() {
-            let change = to - from;
-            let bend = past.bend(from - before, h, change);
-            *marked = change.abs() <= TURN * bend && {
+        for window in windows.iter().filter(|window| window.meets(t - h, t)) {
+            let ends = values.iter().zip(before).zip(to.iter());
+            let bounds = window.floor.iter().zip(&window.ceiling);
+            // Without a choice for each output several are looked at at once.
+            for ((marked, ((&from, &before), &to)), (&floor, &ceiling)) in may_turn.iter_mut().zip(ends).zip(bounds) {
+                let change = to - from;
+                // By how much it bends: its change less that which is expected.
+                let bend = (change - (from - before) * ratio).abs();
                 let reach = BEYOND * bend;
-                let ends = [from.min(to) - reach, from.max(to) + reach];
-                let is_in = |window: &Window| t >= window.from && t - h <= window.to;
-                let leads = |window: &Window| is_in(window) && window.leads(index, ends) != [false; 2];
-                windows.iter().any(leads)
-            };
-            any |= *marked;
+                let [low, high] = if from < to { [from, to] } else { [to, from] };
+                let leads = (low - reach < floor) | (high + reach > ceiling);
+                *marked |= (change.abs() <= TURN * bend) & leads;
+                any |= *marked;
+            }
         }
         any
     }
