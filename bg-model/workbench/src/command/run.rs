@@ -163,8 +163,14 @@ pub fn machine(program: &Program, scene: &Scene, chosen: &Chosen) -> Result<Box<
 /// is no error.
 pub fn follow(machine: &dyn Machine, request: Request, from: Option<&State>) -> Result<Outcome, RunError> {
     let bar = over_time(request.t_end);
+    let mut shown = 0;
     let told = |t| {
-        bar.set_position(ticks(t));
+        // Steps are shorter than ticks, and a position costs as much as a rate.
+        let tick = ticks(t);
+        if tick != shown {
+            bar.set_position(tick);
+            shown = tick;
+        }
         ControlFlow::Continue(())
     };
     let outcome = running::follow(machine, request, from, told);
