@@ -137,10 +137,7 @@ impl Window {
         if t < self.from || t > self.to {
             return;
         }
-        // Most values are none. Without a choice for each of them several are looked at at once.
-        let known = self.least.iter().zip(&self.largest);
-        let outside = values.iter().zip(known).map(|(&value, (&least, &largest))| (value < least) | (value > largest));
-        if !outside.fold(false, |any, is_outside| any | is_outside) {
+        if !is_any_outside(values, &self.least, &self.largest) {
             return;
         }
         for (index, &value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
@@ -179,6 +176,22 @@ impl Window {
         let largest = Peak { t: to, value: self.largest[index] };
         (least.value <= largest.value).then_some(Peaks { least, largest })
     }
+}
+
+/// Whether a value is below its least or above its largest one. In groups without a choice for each value: several are
+/// compared at once.
+fn is_any_outside(values: &[f64], least: &[f64], largest: &[f64]) -> bool {
+    const AT_ONCE: usize = 8;
+    let ((groups, values), (least_of, least), (largest_of, largest)) =
+        (values.as_chunks::<AT_ONCE>(), least.as_chunks::<AT_ONCE>(), largest.as_chunks::<AT_ONCE>());
+    let mut outside = [0; AT_ONCE];
+    for ((values, least), largest) in groups.iter().zip(least_of).zip(largest_of) {
+        for i in 0..AT_ONCE {
+            outside[i] |= u64::from((values[i] < least[i]) | (values[i] > largest[i]));
+        }
+    }
+    let mut others = values.iter().zip(least).zip(largest);
+    outside != [0; AT_ONCE] || others.any(|((value, least), largest)| value < least || value > largest)
 }
 
 fn take(windows: &mut [Window], t: f64, values: &[f64]) {
