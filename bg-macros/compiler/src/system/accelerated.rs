@@ -11,17 +11,19 @@ use std::collections::BTreeMap;
 
 use super::inverse::{InverseDynamics, Row, Variable};
 use super::jacobian::{Entry, Jacobian, equations_of};
-use super::stopped;
 use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::equations::StateEquations;
 
-/// The derivatives; none where the states are no coordinates of more than one freedom, or reactions are of dry friction or
-/// of a stop that is on no joint alone.
+/// The derivatives; none where the states are no coordinates of more than one freedom, or reactions of dry friction and of
+/// stops are left, which lock no joint (`reduce::tree::locking`).
 pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
     let mut pool = equations.pool.clone();
-    let inverse = &stopped::with_stops(&mut pool, equations, equations.inverse.as_ref()?)?;
+    let inverse = equations.inverse.as_ref()?;
     let rows = equations.holding.rigid.len();
-    let multipliers = &equations.solution.multipliers[..rows];
+    let multipliers = &equations.solution.multipliers;
+    if multipliers.len() > rows {
+        return None;
+    }
     let accelerations: Vec<(usize, usize)> = inverse.all().collect();
     if accelerations.len() < 2 {
         return None;
@@ -29,9 +31,6 @@ pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
     let unknowns: Vec<Symbol> =
         accelerations.iter().map(|&of| inverse.symbol(of)).chain(multipliers.iter().copied()).collect();
     let rates = by_accelerations(&mut pool, equations, inverse);
-    if stopped::are_read(&pool, equations, &rates) {
-        return None;
-    }
     let efforts = inverse.rows(&mut pool);
     let flows = flow_rates(&mut pool, equations, &rates);
     let flows = equations_of(&mut pool, equations, multipliers, &flows);
@@ -56,10 +55,6 @@ pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
         }
         let entry = |(row, value)| Entry { row, column, value };
         entries.extend(slopes.into_iter().enumerate().map(entry).filter(|entry| !pool.is_zero(entry.value)));
-    }
-    let is_free = |unknown: usize| inverse.moved[accelerations[unknown].0].locked.is_none();
-    if !stopped::are_regular(&mut pool, &entries, (n, accelerations.len()), &is_free) {
-        return None;
     }
     let needed = needed(&entries, n, unknowns.len());
     let late = needed[unknowns.len() - rows..].iter().filter(|&&needed| needed).count();

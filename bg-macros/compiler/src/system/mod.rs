@@ -14,7 +14,6 @@ pub mod rigid;
 pub mod second_order;
 pub mod sizes;
 pub mod stage;
-mod stopped;
 mod value;
 
 pub use equations::StateEquations;

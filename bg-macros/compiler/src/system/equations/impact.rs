@@ -7,6 +7,7 @@
 //! Thomson, P. G. Tait, Treatise on Natural Philosophy (1879), article 309).
 
 use super::holding::{Slip, mobilities};
+use super::{Reaction, State};
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 use crate::system::equations::definite::filter;
 use crate::system::equations::solution::Known;
@@ -40,6 +41,35 @@ pub struct Struck {
     pub acceleration: Id,
 }
 
+/// A tree whose joints stops may lock, as impacts find it: no joint is locked, and what stops apply are symbols.
+#[derive(Clone, Debug, Default)]
+pub struct Unlocked {
+    /// These stops.
+    pub stops: Vec<Reaction>,
+    /// The rates that differ from those of the states, each with its state.
+    pub rates: Vec<(usize, Id)>,
+}
+
+impl Unlocked {
+    /// Every expression.
+    pub fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
+        self.stops.iter_mut().flat_map(Reaction::roots).chain(self.rates.iter_mut().map(|(_, rate)| rate))
+    }
+
+    /// Puts these rates in the places of those of the states, which it has then.
+    pub fn exchange(&mut self, states: &mut [State]) {
+        for (state, rate) in &mut self.rates {
+            std::mem::swap(&mut states[*state].rate, rate);
+        }
+    }
+
+    /// Gives the states their new numbers; those without one are gone.
+    pub fn renumber(&mut self, to: &dyn Fn(usize) -> Option<usize>) {
+        let rates = std::mem::take(&mut self.rates);
+        self.rates = rates.into_iter().filter_map(|(state, rate)| Some((to(state)?, rate))).collect();
+    }
+}
+
 /// How something leaves a stop.
 #[derive(Clone, Copy, Debug)]
 pub struct Rebound {
@@ -51,13 +81,17 @@ pub struct Rebound {
     pub rest: Option<Id>,
 }
 
+impl Rebound {
+    /// Every expression.
+    pub fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
+        [&mut self.restitution].into_iter().chain(&mut self.rest)
+    }
+}
+
 impl Struck {
     fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
         let Self { slip, rebound, acceleration } = self;
-        [&mut slip.flow, acceleration, &mut rebound.restitution]
-            .into_iter()
-            .chain(&mut slip.gap)
-            .chain(&mut rebound.rest)
+        [&mut slip.flow, acceleration].into_iter().chain(&mut slip.gap).chain(rebound.roots())
     }
 
     fn ids(&self) -> Vec<Id> {

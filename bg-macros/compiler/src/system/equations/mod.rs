@@ -49,7 +49,7 @@ pub use crate::system::equations::solution::Solution;
 pub use fallible::FallibleLaw;
 pub use fault::EquationFault;
 pub use holding::{Holding, Slip};
-pub use impact::{Impacts, Rebound, Struck};
+pub use impact::{Impacts, Rebound, Struck, Unlocked};
 pub use iteration::Iteration;
 pub use origin::{Kind, Origin};
 pub use shown::{Quantity, Shown};
@@ -93,6 +93,8 @@ pub struct StateEquations {
     pub holding: Holding,
     /// Of bodies in the coordinates of joints the efforts that their accelerations take.
     pub inverse: Option<InverseDynamics>,
+    /// Of a tree whose joints stops lock, the rates without these, until the reactions are solved for.
+    pub unlocked: Option<Unlocked>,
     /// What impacts are calculated from.
     pub impacts: Impacts,
     /// The rate of Baumgarte's terms, 1/s; none where rigid joints are kept by projection.
@@ -159,6 +161,15 @@ pub struct Reaction {
     pub switched: Option<Switched>,
     /// Of a stop.
     pub rebound: Option<Rebound>,
+}
+
+impl Reaction {
+    /// Every expression.
+    pub fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
+        let switched = self.switched.iter_mut().flat_map(|switched| [&mut switched.effort, &mut switched.acts]);
+        let leaving = self.rebound.iter_mut().flat_map(Rebound::roots);
+        self.slip.roots().chain(switched).chain(leaving)
+    }
 }
 
 /// What dry friction or a stop gives in place of its multiplier.

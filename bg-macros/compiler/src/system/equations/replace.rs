@@ -2,7 +2,7 @@
 //!
 //! In: [`StateEquations`], what stands for each symbol. Out: the same with it in every expression.
 
-use super::StateEquations;
+use super::{StateEquations, Unlocked};
 use crate::expr::{Branch, Id, Pool, Symbol, substitute_switched};
 
 impl StateEquations {
@@ -21,8 +21,7 @@ impl StateEquations {
         }
         roots.extend(self.outputs.iter_mut().map(|output| &mut output.value));
         for reaction in &mut self.reactions {
-            roots.extend(reaction.slip.roots());
-            roots.extend(reaction.switched.iter_mut().flat_map(|switched| [&mut switched.effort, &mut switched.acts]));
+            roots.extend(reaction.roots());
         }
         roots.extend([&mut self.balance.stored, &mut self.balance.supplied, &mut self.balance.dissipated]);
         for iteration in &mut self.iterations {
@@ -30,6 +29,7 @@ impl StateEquations {
         }
         roots.extend(&mut self.assembly.sides);
         roots.extend(self.projections.iter_mut().chain(&mut self.settled).map(|(_, id)| id));
+        roots.extend(self.unlocked.iter_mut().flat_map(Unlocked::roots));
         roots
     }
 
@@ -72,6 +72,12 @@ impl StateEquations {
         let after = substitute_switched(&mut pool, &before, replace, branch);
         for (root, id) in self.roots().into_iter().zip(after) {
             *root = id;
+        }
+        let stops = self.unlocked.iter_mut().flat_map(|unlocked| &mut unlocked.stops);
+        for stop in self.reactions.iter_mut().chain(stops).filter_map(|reaction| reaction.rebound.as_mut()) {
+            if let Branch::Kept(number) = branch(stop.switch) {
+                stop.switch = number;
+            }
         }
         // By themselves, after the others: so they have no influence on the order of terms.
         let values: Vec<Id> = self.fallible.iter().map(|law| law.value).collect();

@@ -181,6 +181,7 @@ impl<'a> Signals<'a> {
             solution: Solution::default(),
             holding,
             inverse: None,
+            unlocked: None,
             impacts: Impacts::default(),
             baumgarte: self.graph.baumgarte,
             shown,

@@ -137,6 +137,9 @@ pub(super) fn keep_states(equations: &mut StateEquations, report: &mut Report, k
     }
     equations.holding.renumber(&|state| is_kept(state).then(|| numbers[state]));
     equations.impacts.renumber(&|state| is_kept(state).then(|| numbers[state]));
+    if let Some(unlocked) = &mut equations.unlocked {
+        unlocked.renumber(&|state| is_kept(state).then(|| numbers[state]));
+    }
     let symbols: Vec<Id> = numbers.iter().map(|&number| equations.pool.symbol(Symbol::state(number))).collect();
     equations.replace(&|symbol| symbol.as_state().map(|state| symbols[state]));
     report.keep(kept);

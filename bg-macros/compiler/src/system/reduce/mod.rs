@@ -126,7 +126,7 @@ const JOINTS: [Pass; 5] = [
     },
     Pass {
         name: "reactions solved",
-        applies: |equations, _| !equations.reactions.is_empty(),
+        applies: |equations, _| !equations.reactions.is_empty() || equations.unlocked.is_some(),
         run: |equations, _, _, _| reaction::solve(equations),
     },
     Pass {

@@ -15,33 +15,67 @@ use crate::system::equations::definite::Factors;
 use crate::system::equations::impact::{Impacts, Struck};
 use crate::system::equations::solution::Solution;
 use crate::system::equations::stop::RETURN;
-use crate::system::equations::{Kind, Reaction, Slip, State, StateEquations};
+use crate::system::equations::{Kind, Reaction, Slip, StateEquations};
 
 /// Solves for all multipliers. They stay symbols in the equations until these are closed.
 pub fn solve(equations: &mut StateEquations) {
-    let reactions = std::mem::take(&mut equations.reactions);
+    let mut unlocked = equations.unlocked.take().unwrap_or_default();
+    let mut reactions = std::mem::take(&mut equations.reactions);
+    reactions.append(&mut unlocked.stops.clone());
     if reactions.is_empty() {
         return;
     }
-    let (reactions, moves) = closing::arrange(equations, reactions);
-    let rates = flow_rates(equations, &reactions);
-    let accelerations = accelerations(equations, &reactions, &rates);
-    let pool = &mut equations.pool;
-    let matrix = matrix(pool, &reactions, &accelerations);
-    let decoupled = friction::decoupled(pool, &reactions, &matrix);
+    // Joints that rest on stops are locked in the rates, and move where something hits.
+    unlocked.exchange(&mut equations.states);
+    let (mut reactions, moves) = closing::arrange(equations, reactions);
+    let free = Acting::of(equations, &reactions);
+    let hit = (!unlocked.stops.is_empty()).then(|| impacts(equations, &reactions, &free));
+    unlocked.exchange(&mut equations.states);
+    let rigid = friction::rigid(&reactions);
+    let mut acting = free.clone();
+    let hit = hit.map(|mut impacts| {
+        let flows: Vec<Id> = impacts.stops.iter().map(|stop| stop.slip.flow).collect();
+        let rates = flow_rates(equations, &flows);
+        impacts.stops.iter_mut().zip(rates).for_each(|(stop, rate)| stop.acceleration = rate);
+        reactions.truncate(rigid);
+        acting = Acting::of(equations, &reactions);
+        impacts
+    });
+    let (accelerations, pool) = (&acting.accelerations, &mut equations.pool);
+    let decoupled = friction::decoupled(pool, &reactions, &acting.matrix);
     let factors = Factors::of(pool, &decoupled, |pool, row, pivot, entry| inverse(pool, &reactions[row], pivot, entry));
     let multipliers: Vec<Symbol> = reactions.iter().map(|reaction| reaction.multiplier).collect();
     let efforts = friction::efforts(pool, &reactions);
-    let residuals = friction::residuals(pool, &multipliers, &efforts, &accelerations);
+    let residuals = friction::residuals(pool, &multipliers, &efforts, accelerations);
     let right = right(pool, &multipliers, &residuals);
     let solved = factors.solve(pool, &right);
     let values = (0..solved.len()).map(|row| with(pool, efforts[row], multipliers[row], solved[row])).collect();
-    let rigid = friction::rigid(&reactions);
-    equations.impacts = impacts(pool, &equations.states, &reactions, (&matrix, &rates));
+    equations.impacts = hit.unwrap_or_else(|| impacts(equations, &reactions, &free));
     let holding = &mut equations.holding;
-    (holding.matrix, holding.moves) = (matrix.into_iter().take(rigid).collect(), moves);
+    (holding.matrix, holding.moves) = (free.matrix.into_iter().take(rigid).collect(), moves);
     holding.rigid = reactions.into_iter().take(rigid).map(|reaction| reaction.slip).collect();
     equations.solution = Solution { multipliers, residuals, efforts, factors, values };
+}
+
+/// What reactions do to the flows that they hold.
+#[derive(Clone)]
+struct Acting {
+    /// The rates of the flows.
+    rates: Vec<Id>,
+    /// A l + b.
+    accelerations: Vec<Id>,
+    /// A.
+    matrix: Vec<Vec<Id>>,
+}
+
+impl Acting {
+    fn of(equations: &mut StateEquations, reactions: &[Reaction]) -> Self {
+        let flows: Vec<Id> = reactions.iter().map(|reaction| reaction.slip.flow).collect();
+        let rates = flow_rates(equations, &flows);
+        let accelerations = accelerations(equations, reactions, &rates);
+        let matrix = matrix(&mut equations.pool, reactions, &accelerations);
+        Self { rates, accelerations, matrix }
+    }
 }
 
 /// -b of A l + b: the residuals without the reactions.
@@ -75,14 +109,15 @@ fn kept(pool: &mut Pool, slip: &Slip, pivot: Id) -> Id {
 }
 
 /// What impacts are calculated from: nothing without a stop.
-fn impacts(pool: &mut Pool, states: &[State], reactions: &[Reaction], (matrix, rates): (&[Vec<Id>], &[Id])) -> Impacts {
+fn impacts(equations: &mut StateEquations, reactions: &[Reaction], acting: &Acting) -> Impacts {
+    let StateEquations { pool, states, .. } = equations;
     // Stops come after what is rigid, then dry friction, whose efforts are bounded and so no impulses.
     let rows = reactions.iter().take_while(|reaction| reaction.switched.is_none() || reaction.rebound.is_some());
     let rows: Vec<Reaction> = rows.cloned().collect();
     let stop = |(reaction, &acceleration): (&Reaction, &Id)| {
         Some(Struck { slip: reaction.slip.clone(), rebound: reaction.rebound?, acceleration })
     };
-    let stops: Vec<Struck> = rows.iter().zip(rates).filter_map(stop).collect();
+    let stops: Vec<Struck> = rows.iter().zip(&acting.rates).filter_map(stop).collect();
     if stops.is_empty() {
         return Impacts::default();
     }
@@ -92,38 +127,40 @@ fn impacts(pool: &mut Pool, states: &[State], reactions: &[Reaction], (matrix, r
     // What is not linear in the efforts has no impulse.
     let is_known = |symbol: Symbol| !matches!(symbol, Symbol::Multiplier(_));
     integrals.retain(|(_, by)| pool.symbols(by).into_iter().all(is_known));
-    Impacts { rigid, stops, matrix: matrix[..rows.len()].to_vec(), moves, integrals }
+    Impacts { rigid, stops, matrix: acting.matrix[..rows.len()].to_vec(), moves, integrals }
 }
 
-/// dv/dt of every flow v.
-fn flow_rates(equations: &mut StateEquations, reactions: &[Reaction]) -> Vec<Id> {
+/// dv/dt of these flows v.
+fn flow_rates(equations: &mut StateEquations, flows: &[Id]) -> Vec<Id> {
     let pool = &mut equations.pool;
     let mut seeds: BTreeMap<Symbol, Id> = BTreeMap::from([(Symbol::Time, pool.one())]);
     for (state, definition) in equations.states.iter().enumerate() {
         seeds.insert(Symbol::state(state), definition.rate);
     }
-    let flows: Vec<Id> = reactions.iter().map(|reaction| reaction.slip.flow).collect();
-    derivative(pool, &flows, &seeds)
+    derivative(pool, flows, &seeds)
 }
 
 /// dv/dt of every flow v, with Baumgarte's terms 2 a v + a^2 q where they are asked for; zero where the reactions are
 /// right. Dry friction keeps no place; what rests on a stop returns to it slowly.
 fn accelerations(equations: &mut StateEquations, reactions: &[Reaction], rates: &[Id]) -> Vec<Id> {
     let pool = &mut equations.pool;
-    let (zero, rate_of_decay) = (pool.zero(), equations.baumgarte.unwrap_or(0.0));
-    reactions
-        .iter()
-        .zip(rates)
-        .map(|(Reaction { slip, switched, rebound, .. }, &rate)| {
-            let gap = slip.gap.unwrap_or(zero);
-            let (decay, back) = match (switched, rebound) {
-                (_, Some(_)) => (2.0 * RETURN, RETURN * RETURN),
-                (Some(_), None) => (friction::DECAY, 0.0),
-                (None, None) => (2.0 * rate_of_decay, rate_of_decay * rate_of_decay),
-            };
-            pool.linear(0.0, &[(rate, 1.0), (slip.flow, decay), (gap, back)])
-        })
-        .collect()
+    let (zero, baumgarte) = (pool.zero(), equations.baumgarte.unwrap_or(0.0));
+    let acceleration = |(reaction, &rate): (&Reaction, &Id)| {
+        let Slip { flow, gap, .. } = reaction.slip;
+        let [by_flow, by_gap] = decay(reaction, baumgarte);
+        pool.linear(0.0, &[(rate, 1.0), (flow, by_flow), (gap.unwrap_or(zero), by_gap)])
+    };
+    reactions.iter().zip(rates).map(acceleration).collect()
+}
+
+/// By which parts of a flow, 1/s, and of its gap, 1/s^2, the rate of the flow falls where it is held; those of rigid joints
+/// are Baumgarte's.
+pub(super) fn decay(of: &Reaction, baumgarte: f64) -> [f64; 2] {
+    match (&of.switched, of.rebound) {
+        (_, Some(_)) => [2.0 * RETURN, RETURN * RETURN],
+        (Some(_), None) => [friction::DECAY, 0.0],
+        (None, None) => [2.0 * baumgarte, baumgarte * baumgarte],
+    }
 }
 
 /// A of expressions that are linear in the multipliers: its lower triangle by rows.
@@ -229,6 +266,19 @@ mod tests {
             let rate = evaluate(&of.pool, &[of.states[momentum].rate], &environment)[0] / 2.0;
             let expected = if is_clear { -10.0 } else { -2.0 * v - y };
             assert!((rate - expected).abs() < 1e-14, "{y} {v}: {rate} {expected}");
+        }
+    }
+
+    /// Of a parameter that a scene does not tune a number is left, and the others have their new places.
+    #[test]
+    fn how_something_leaves_a_stop_is_by_the_parameters_of_the_scene() {
+        let graph = "param a: kg = 2; param e: 1 = 0.25; 1 fall: translation; I ball = a; Se weight = -20;
+            weight -> fall -> ball; stop floor on fall { at least 0; start 0.5; restitution e; } observe { y: m = floor.place; }";
+        for (tuned, expected) in [("a", 0.25), ("e", 0.7)] {
+            let of = scene(graph, &format!("tune {{ {tuned} }}")).reduced;
+            let environment = Environment { parameters: &[0.7], ..Environment::default() };
+            let found = evaluate(&of.pool, &[of.impacts.stops[0].rebound.restitution], &environment);
+            assert_eq!(found, [expected], "{tuned}");
         }
     }
 

@@ -12,6 +12,7 @@ mod guessed;
 mod joints;
 mod links;
 mod loads;
+mod locking;
 mod loops;
 mod motion;
 mod numbers;
@@ -19,7 +20,6 @@ mod reactions;
 mod recognition;
 mod recursion;
 mod relative;
-mod sticking;
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,13 +28,15 @@ use super::speeds::of_kind;
 use super::{Operations, closing, friction, is_constant, turned};
 use crate::expr::{Environment, Id, Node, Pool, Symbol, evaluate, exchange, partial, substitute};
 use crate::system::Value;
-use crate::system::equations::{Kind, Origin, State, StateEquations};
+use crate::system::equations::impact::Unlocked;
+use crate::system::equations::{Kind, Origin, Reaction, State, StateEquations};
 use crate::system::inverse::InverseDynamics;
 use crate::system::link::{Freedom, Link, Moved, Moves};
 use bodies::{Body, velocity};
 use guessed::Guessed;
 use joints::Joint;
 use loads::{Loads, Tree};
+use locking::Hold;
 use motion::Motion;
 use reactions::Wanted;
 use recursion::{Accelerations, Ground};
@@ -94,10 +96,13 @@ pub(super) fn put(
     let Loads { mut moved, axes, ground } = Loads::of(equations, &tree, &coordinates);
     let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
     let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
-    let sticking = sticking::lock(equations, &mut moved, &images);
+    let apart = moved.clone();
+    let holds = locking::lock(equations, &mut moved, &images);
     let when = when(equations, &links, (&moved, &motion.spins), &ground, operations);
     let found = recursion::accelerations(&mut equations.pool, &links, (&moved, &motion.spins), (&ground, when));
-    let found = linear(equations, &links, found);
+    let multipliers = multipliers(&equations.reactions);
+    let found = linear(&mut equations.pool, &links, found, &multipliers);
+    let released = released(equations, &tree, (&apart, &motion), (&ground, when), &holds);
     let mut starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
     for (_, of_one) in joints.iter().zip(&mut starts).filter(|(joint, _)| joint.is_sought) {
         of_one.iter_mut().for_each(|[_, speed]| *speed = guessed::sought(equations, *speed));
@@ -107,7 +112,7 @@ pub(super) fn put(
         equations.states[state].rate = rate;
     }
     let mut reactions = wanted.images(&mut equations.pool, &tree, (&moved, &motion, &found), &coordinates)?;
-    reactions.extend(sticking::images(&mut equations.pool, &sticking, &moved, &found.needed));
+    reactions.extend(locking::images(&mut equations.pool, &holds, &moved, &found.needed));
     for (index, body) in bodies.iter().enumerate() {
         for (k, &spin) in body.spin.iter().enumerate() {
             // Of a body on no such joint, which keeps its states.
@@ -132,12 +137,14 @@ pub(super) fn put(
     equations.inverse = inverse(equations, &tree, (&moved, &motion, &found), (&ground, next));
     let integrated = become_states(equations, &tree, (&moved, &found.rates), &starts, report)?;
     let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
-    for (coordinate, state) in integrated {
+    for (&coordinate, &state) in &integrated {
         kept[state] = true;
         places.insert(coordinate, equations.pool.symbol(Symbol::state(state)));
     }
     equations.projections.retain(|(state, _)| kept[*state] && !given.contains(state));
+    let unlocked = released.map(|rates| rates.of_states(equations, &moved, &integrated, &holds));
     equations.replace(&|symbol| reactions.get(&symbol).copied());
+    equations.unlocked = unlocked;
     equations.replace(&|symbol| images.get(&symbol).copied());
     equations.replace(&|symbol| places.get(&symbol).copied());
     super::live::keep_states(equations, report, &kept);
@@ -164,12 +171,74 @@ fn when(
         let mut alone = equations.clone();
         let zero = alone.pool.zero();
         let found = recursion::accelerations(&mut alone.pool, links, motion, (ground, when));
-        let found = linear(&mut alone, links, found);
+        let multipliers = multipliers(&alone.reactions);
+        let found = linear(&mut alone.pool, links, found, &multipliers);
         let rates = found.rates.into_iter().chain(std::iter::repeat(zero));
         alone.states.iter_mut().zip(rates).for_each(|(state, rate)| state.rate = rate);
         operations(&mut alone)
     };
     if cost(Ground::Last) < cost(Ground::First) { Ground::Last } else { Ground::First }
+}
+
+/// The rates with no joint locked.
+struct Released {
+    /// Those of the speeds of the links.
+    speeds: Vec<Id>,
+    /// Those of the momenta that bodies keep, each with its state.
+    momenta: Vec<(usize, Id)>,
+}
+
+/// The rates with no joint locked, as impacts find it, with the reactions that hold joints as symbols; none where no stop
+/// does.
+fn released(
+    equations: &mut StateEquations,
+    tree: &Tree<'_>,
+    (moved, motion): (&[Moved], &Motion),
+    (ground, when): (&Value, Ground),
+    holds: &[Hold],
+) -> Option<Released> {
+    let stops = holds.iter().filter(|hold| hold.reaction.rebound.is_some()).map(|hold| &hold.reaction);
+    let multipliers = multipliers(equations.reactions.iter().chain(stops));
+    if multipliers.len() == equations.reactions.len() {
+        return None;
+    }
+    let pool = &mut equations.pool;
+    let found = recursion::accelerations(pool, tree.links, (moved, &motion.spins), (ground, when));
+    let found = linear(pool, tree.links, found, &multipliers);
+    let momenta = motion.rates(pool, tree, (&motion.spins, &found), ground);
+    Some(Released { speeds: found.rates, momenta })
+}
+
+impl Released {
+    /// With what else these stops change, once speeds are states.
+    fn of_states(
+        self,
+        equations: &StateEquations,
+        moved: &[Moved],
+        integrated: &BTreeMap<Symbol, usize>,
+        holds: &[Hold],
+    ) -> Unlocked {
+        let StateEquations { pool, states, .. } = equations;
+        let stops: Vec<Reaction> =
+            holds.iter().map(|hold| &hold.reaction).filter(|reaction| reaction.rebound.is_some()).cloned().collect();
+        let read: BTreeSet<Symbol> = multipliers(&stops).into_iter().collect();
+        let rates = states.iter().map(|state| state.rate).enumerate();
+        let mut rates: BTreeMap<usize, Id> = rates.filter(|&(_, rate)| has_any(pool, &[rate], &read)).collect();
+        rates.extend(self.momenta);
+        for (own, rate) in moved.iter().zip(self.speeds) {
+            if let Node::Symbol(speed) = *pool.node(own.moves.speed)
+                && let Some(&state) = integrated.get(&speed)
+            {
+                rates.insert(state, rate);
+            }
+        }
+        Unlocked { stops, rates: rates.into_iter().collect() }
+    }
+}
+
+/// The symbols of these reactions.
+fn multipliers<'a>(of: impl IntoIterator<Item = &'a Reaction>) -> Vec<Symbol> {
+    of.into_iter().map(|reaction| reaction.multiplier).collect()
 }
 
 /// What the accelerations of the links take, where that is known here; from this number on symbols are free.
@@ -252,14 +321,12 @@ fn become_states(
 
 /// The accelerations as sums over the reactions that are left, so that the matrix of these has parts of the rates; those
 /// of links with a coordinate, whose accelerations nothing reads, as they are.
-fn linear(equations: &mut StateEquations, links: &[Link], of: Accelerations) -> Accelerations {
-    let StateEquations { pool, reactions, .. } = equations;
-    let multipliers: Vec<Symbol> = reactions.iter().map(|reaction| reaction.multiplier).collect();
+fn linear(pool: &mut Pool, links: &[Link], of: Accelerations, multipliers: &[Symbol]) -> Accelerations {
     let zero = pool.zero();
     let mut written = |ids: &[Id]| -> Vec<Id> {
         let alone = substitute(pool, ids, &|symbol| multipliers.contains(&symbol).then_some(zero));
         let mut sums: Vec<Vec<Id>> = alone.into_iter().map(|id| vec![id]).collect();
-        for &multiplier in &multipliers {
+        for &multiplier in multipliers {
             let by = partial(pool, ids, multiplier);
             let symbol = pool.symbol(multiplier);
             for (sum, by) in sums.iter_mut().zip(by) {

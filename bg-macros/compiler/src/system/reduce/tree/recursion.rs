@@ -220,14 +220,17 @@ fn release(pool: &mut Pool, freedom: Freedom, body: &Articulated, own: &Moved) -
     ];
     left[0] = left[0].symmetric();
     left[2] = left[2].symmetric();
-    // What a freedom that nothing holds takes no effort along.
     let (own_block, of_coupling) = match freedom {
         Freedom::Turn => (0, [6, 7, 8]),
         _ => (2, [2, 5, 8]),
     };
-    if own.locked.is_none() {
-        [2, 5, 6, 7, 8].into_iter().for_each(|k| left[own_block].0[k] = zero);
-        of_coupling.into_iter().for_each(|k| left[1].0[k] = zero);
+    // What a freedom takes along where it is locked, and nothing where it is not.
+    let mut along = |of: Id| own.locked.map_or(zero, |locked| pool.mul(locked.acts, of));
+    for k in [2, 5, 6, 7, 8] {
+        left[own_block].0[k] = along(body.inertia[own_block].0[k]);
+    }
+    for k in of_coupling {
+        left[1].0[k] = along(body.inertia[1].0[k]);
     }
     let mut bias = [column, row].map(|of| of.multiply(pool, &Value::scalar(rate)));
     for (bias, own) in bias.iter_mut().zip(&body.bias) {
