@@ -68,23 +68,23 @@ pub struct Moved {
     pub effort: Id,
     /// Moment about its origin and force, in its axes.
     pub load: [Value; 2],
-    /// Where dry friction may hold it.
+    /// Where dry friction or stops may hold it.
     pub locked: Option<Locked>,
     /// Of a link whose body keeps its orientation.
     pub own: Option<Own>,
 }
 
-/// A link that dry friction may hold.
+/// A link that dry friction or stops may hold.
 #[derive(Clone, Copy, Debug)]
 pub struct Locked {
-    /// 1 where it sticks, else 0.
+    /// 1 where it sticks or rests, else 0.
     pub acts: Id,
-    /// The rate of its speed where it sticks.
+    /// The rate of its speed there.
     pub rate: Id,
 }
 
 impl Locked {
-    /// 1 where it slides, else 0.
+    /// 1 where nothing holds it, else 0.
     pub fn slides(&self, pool: &mut Pool) -> Id {
         pool.linear(1.0, &[(self.acts, -1.0)])
     }

@@ -106,10 +106,10 @@ mod tests {
     use crate::source::syntax;
     use crate::{emit, pipeline};
 
-    /// Six bodies on hinges with stops, whose impacts and reactions are tables alone.
+    /// Eight bodies on hinges with stops, whose impacts and reactions are tables alone.
     fn arm() -> String {
         let mut text = "graph G { gravity [0, 0, -9.81]; ground { point O = [0, 0, 0]; } ".to_owned();
-        for k in 0..6 {
+        for k in 0..8 {
             let (upper, axis) = (format!("b{}.low", k - 1), ["y", "z", "x"][k as usize % 3]);
             let upper = if k == 0 { "ground.O" } else { &upper };
             let _ = write!(
@@ -121,7 +121,7 @@ mod tests {
                  stop s{k} on j{k} {{ at most 0.2; restitution 0.5; }} "
             );
         }
-        text + "observe { a: rad = j5.angle; } scenes only; scene S {} }"
+        text + "observe { a: rad = j7.angle; } scenes only; scene S {} }"
     }
 
     #[test]
