@@ -7,6 +7,7 @@ pub mod linear;
 pub mod npz;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod optimize;
+pub mod samples;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod spectrum;
 pub mod thinning;

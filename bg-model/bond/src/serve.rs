@@ -107,7 +107,8 @@ fn is_of_the_folder(name: &str) -> bool {
 }
 
 /// The type of a file by its ending.
-fn kind(name: &str) -> &'static str {
+#[must_use]
+pub fn kind(name: &str) -> &'static str {
     match name.rsplit('.').next() {
         Some("html") => "text/html; charset=utf-8",
         Some("css") => "text/css; charset=utf-8",

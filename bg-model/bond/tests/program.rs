@@ -445,7 +445,11 @@ fn a_report_is_replaced_when_a_file_is_saved() {
     let mut watch = Watch::of(folder.path(), "driven.bond");
     let first = watch.next();
     assert_eq!((first["report"].as_u64(), first["fault"].as_str()), (Some(1), None), "{first}");
-    assert!(watch.get("/report").contains("shaft.speed") && watch.get("/").contains("iframe"));
+    let page = watch.get("/report");
+    assert!(page.contains("shaft.speed") && watch.get("/").contains("iframe"));
+    // Its script is a file of the server, so that the next report takes its place without it.
+    assert!(page.contains("<script src=\"report.js\">") && !page.contains("data-plays"), "{page}");
+    assert!(["report.css", "beside.js", "report.js"].iter().all(|name| !watch.get(&format!("/{name}")).is_empty()));
     // A fault in a used file, which an editor replaces: the last report stays.
     write(&folder, "new.bond", &WHEEL.replace("-> disc", "-> disk"));
     std::fs::rename(folder.path().join("new.bond"), folder.path().join("parts/wheel.bond")).expect("a rename");

@@ -1,11 +1,11 @@
 // The first script of a page: unpacks the texts that stand in it as base64 of deflated UTF-8, and starts the script
 // among them. Not bundled; `src/page/mod.rs` writes it into the page as it is.
-const inflated = (id) => {
-  const text = document.getElementById(id).textContent;
+const inflated = (id, page = document) => {
+  const text = page.getElementById(id).textContent;
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
   return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw")));
 };
-const unpacked = (id) => inflated(id).text();
+const unpacked = (id, page) => inflated(id, page).text();
 const unpackedBytes = (id) => inflated(id).arrayBuffer();
 /** What starts a worker with the model of a live page. */
 const model = async () => {

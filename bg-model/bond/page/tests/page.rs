@@ -191,7 +191,8 @@ fn a_browser_compiles_while_one_types() {
     // The fault stands where the text has it, and the machine of before is still there.
     assert_eq!((&verdict["marked"], &verdict["old"]), (&json!("radd"), &json!(true)));
     assert!(verdict["fault"].as_str().unwrap().starts_with("4:18 BG0301 `radd`"), "{}", verdict["fault"]);
-    assert_eq!(verdict["corrected"], "0.75");
+    // A text of which but a number is another is shown where the one before was.
+    assert_eq!((&verdict["corrected"], &verdict["renewed"]), (&json!("0.75"), &json!(true)));
     // A slider runs the model that is compiled here.
     assert_eq!(verdict["changed"], verdict["slid"].to_string());
     assert_eq!((&verdict["followed"]["text"], &verdict["followed"]["end"]), (&json!(true), &json!("1.5")));

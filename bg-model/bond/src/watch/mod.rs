@@ -1,7 +1,7 @@
 //! The command `watch`: the report of a file in the browser, made anew whenever the file is saved.
 //!
 //! In: a file, options of `report`. Out: a page of a server on this machine; the newest report is in it, and above it
-//! what is wrong with the file now. Method: file times are looked at twenty times a second, which sees a file that an
+//! what is wrong with the file now. Method: file times are looked at a hundred times a second, which sees a file that an
 //! editor replaces as it sees one that is written, on every system and in every folder. A report is made by a process
 //! of its own, which a later save ends.
 
@@ -25,7 +25,7 @@ use tempfile::TempDir;
 use crate::served::Served;
 
 /// Between two looks at the files.
-const LOOK: Duration = Duration::from_millis(50);
+const LOOK: Duration = Duration::from_millis(10);
 
 /// Serves the report of a file until the process is ended.
 pub fn watch(path: &Path, options: &[OsString], served: &Served) -> ExitCode {
@@ -41,21 +41,22 @@ pub fn watch(path: &Path, options: &[OsString], served: &Served) -> ExitCode {
     if let Err(fault) = served.show(&address, &path.display().to_string()) {
         return refused(&fault);
     }
-    follow(path, options, &shared)
+    // The graph stays the same where a number changes.
+    match TempDir::new() {
+        Ok(kept) => follow(path, options, &kept.path().join("picture"), &shared),
+        Err(fault) => refused(&format!("there is no folder for what is kept: {fault}")),
+    }
 }
 
-/// Makes a report at every change.
-fn follow(path: &Path, options: &[OsString], shared: &Shared) -> ! {
+/// Makes a report at every change; the picture of the graph is kept in `picture`.
+fn follow(path: &Path, options: &[OsString], picture: &Path, shared: &Shared) -> ! {
     let mut changes = Changes::of(of_options(options));
     let mut making: Option<Making> = None;
-    // The graph stays the same where a number changes.
-    let kept = TempDir::new().ok();
-    let picture = kept.as_ref().map(|folder| folder.path().join("picture"));
     loop {
         if changes.are_there(|| file::files(path)) {
             // What runs is ended where it is dropped.
             drop(making.take());
-            match Making::begin(path, options, picture.as_deref()) {
+            match Making::begin(path, options, picture) {
                 Ok(begun) => {
                     shared.begin();
                     making = Some(begun);

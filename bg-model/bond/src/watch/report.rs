@@ -1,6 +1,6 @@
 //! A report, made by a process of its own.
 
-use std::ffi::{OsStr, OsString};
+use std::ffi::OsString;
 use std::fs::File;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -27,18 +27,18 @@ const SAID: &str = "said";
 const OUT: &str = "out";
 
 impl Making {
-    /// Begins the report of a file with these options, which keeps the picture of the graph in
+    /// Begins the report of a file with these options, for a frame of the page; the picture of the graph is kept in
     /// `picture`.
     ///
     /// # Errors
     /// No process can be started, or no file be written: a sentence.
-    pub fn begin(file: &Path, options: &[OsString], picture: Option<&Path>) -> Result<Self, String> {
+    pub fn begin(file: &Path, options: &[OsString], picture: &Path) -> Result<Self, String> {
         let begun = || {
             let folder = TempDir::new()?;
             let said = File::create(folder.path().join(SAID))?;
             let mut command = Command::new(std::env::current_exe()?);
             command.arg("report").arg(file).args(options).arg("--out").arg(folder.path().join(OUT));
-            command.args(picture.iter().flat_map(|picture| [OsStr::new("--picture"), picture.as_os_str()]));
+            command.arg("--frame").arg(picture);
             let child = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(said).spawn()?;
             Ok(Self { child, folder })
         };

@@ -5,12 +5,14 @@
 //! | `/` | the page |
 //! | `/state?after=N` | what there is to show, as JSON; after some seconds, or as soon as it is no longer the state `N` |
 //! | `/report` | the newest report |
+//! | `/report.css`, `/beside.js`, `/report.js` | its style and scripts |
 
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use bond_graph::serve::{ServeFault, answering, header};
+use bg_workbench::page::BESIDE;
+use bond_graph::serve::{ServeFault, answering, header, kind};
 use serde::Serialize;
 use tiny_http::{Request, Response};
 
@@ -103,7 +105,10 @@ fn answer(request: Request, shared: &Shared) {
             (shared.after(after), "application/json")
         }
         "/report" => (shared.now().page.clone(), "text/html; charset=utf-8"),
-        _ => return drop(request.respond(Response::empty(404))),
+        path => match BESIDE.iter().find(|(name, _)| path.strip_prefix('/') == Some(name)) {
+            Some((name, text)) => ((*text).to_owned(), kind(name)),
+            None => return drop(request.respond(Response::empty(404))),
+        },
     };
     let response = Response::from_string(text).with_header(header("Content-Type", kind));
     // A browser that has gone away is no fault.

@@ -1,6 +1,6 @@
 // The bond-graph picture: hover a bond for its effort, flow and power over time.
 // In: the section with the SVG, the bonds of the page's data, the charts. Out: a panel with the bond's charts; a click
-// keeps it; another run's bonds take their place by `update`.
+// keeps it; another run's bonds take their place by `update`, another picture by `end` and `graph` again.
 
 import { filled } from "./data.js";
 import { element } from "./page.js";
@@ -102,5 +102,7 @@ export function graph(section, bonds, charts) {
     charts.replace(panel, data.times, curvesOf(data, shown.index));
     shown.charts = charts.all.filter((chart) => chart.place.parentElement === panel);
   };
-  return { show: (index) => show(section.querySelector(`g.bond[data-bond="${index}"]`), false), update };
+  /** Takes the panel's charts away, before another picture is in the place of this one. */
+  const end = () => shown.charts.forEach((chart) => charts.remove(chart));
+  return { show: (index) => show(section.querySelector(`g.bond[data-bond="${index}"]`), false), update, end };
 }

@@ -10,6 +10,7 @@ import { read } from "./data.js";
 import { graph } from "./graph.js";
 import { withOthers } from "./others.js";
 import { element, onPaper } from "./page.js";
+import { bringOver, isOfOneKind } from "./renewal.js";
 import { texts } from "./texts.js";
 import { trial } from "./trial.js";
 import { Tuning } from "./tuning.js";
@@ -20,7 +21,10 @@ const faults = [];
 window.addEventListener("error", ({ message }) => faults.push(message));
 window.addEventListener("unhandledrejection", ({ reason }) => faults.push(String(reason)));
 
-const data = read(JSON.parse(document.getElementById("data").textContent));
+/** The data that stand in a page. */
+const dataOf = (page) => read(JSON.parse(page.getElementById("data").textContent));
+
+let data = dataOf(document);
 const section = (name) => document.getElementById(name);
 const clock = new Clock(data.times[0] ?? 0, data.times.at(-1) ?? 0);
 const charts = new Charts(clock);
@@ -36,34 +40,27 @@ const painted = () =>
     setTimeout(resolve, 300);
   });
 
-/** Hands the images their SVG texts. */
-async function draw() {
+/** Hands the images their SVG texts, which stand in `page`. */
+async function draw(page = document) {
   const images = [...document.querySelectorAll("img[data-drawing]")];
   if (images.length === 0) return;
-  const texts = JSON.parse(await unpacked("drawings"));
+  const texts = JSON.parse(await unpacked("drawings", page));
   for (const image of images) {
     image.src = URL.createObjectURL(new Blob([texts[Number(image.dataset.drawing)]], { type: "image/svg+xml" }));
   }
   await Promise.all(images.map((image) => image.decode().catch(() => null)));
 }
 
-/** The sliders of a live page; what else is on it follows them. */
-async function tuning({ mark, view, picture, against, wanted }) {
-  if (!section("live")) return null;
-  const settings = JSON.parse(section("live").textContent);
+/** The sliders of a live page, whose settings stand in `page`; `take` takes over a run. */
+async function tuning(take, page = document) {
+  if (!section("controls")) return null;
+  const settings = JSON.parse(page.getElementById("live").textContent);
   const defaults = new Map(settings.parameters.map((parameter) => [parameter.name, parameter.default]));
   const show = (answer, milliseconds) => {
-    const { times, events, animation, ...shown } = read(answer.data);
-    clock.span(times[0], times.at(-1));
-    mark(events);
-    charts.replace(section("chart-list"), times, withOthers(shown.charts, times, data.others));
-    wanted?.choose();
-    against?.update();
-    if (section("balance-charts")) charts.replace(section("balance-charts"), times, shown.balance);
-    if (animation) view?.update(animation);
-    picture?.update(answer.bonds);
+    take({ ...read(answer.data), others: data.others }, answer.bonds);
     texts(answer, milliseconds, made.values, defaults);
   };
+  section("controls").replaceChildren();
   const made = new Tuning(section("controls"), settings, await model(), show);
   return made;
 }
@@ -97,7 +94,8 @@ async function start({ motion, modes }) {
   // Where the machine is to move at once, that comes first.
   if (!plays) await painted();
   const view = data.animation && motion ? motion(section("machine"), data.animation, clock) : null;
-  if (data.modes && view) modes(section("modes"), data.modes, view, clock);
+  const swings = view && modes(view, clock);
+  if (data.modes) swings?.(section("modes"), data.modes);
   if (plays) {
     clock.play();
     // A page around this one waits with what would keep the machine from moving.
@@ -106,13 +104,46 @@ async function start({ motion, modes }) {
       dispatchEvent(new Event("moving"));
     });
   }
-  const bonds = JSON.parse(await unpacked("bonds"));
-  const picture = section("picture") ? graph(section("picture"), bonds, charts) : null;
+  const parts = { clock, charts, view, faults };
+  const drawn = async (page) => graph(section("picture"), JSON.parse(await unpacked("bonds", page)), charts);
+  parts.picture = section("picture") ? await drawn(document) : null;
   onPaper((isPaper) => view?.print(isPaper));
-  const against = section("against") ? new Against(section("against"), () => charts.in(outputs), clock) : null;
-  const live = await tuning({ mark, view, picture, against, wanted });
+  parts.against = section("against") ? new Against(section("against"), () => charts.in(outputs), clock) : null;
+  /** Shows another run of the same model. */
+  const take = ({ times, events, animation, charts: shown, balance, others }, bonds) => {
+    if (animation) view?.update(animation);
+    clock.span(times[0], times.at(-1));
+    mark(events);
+    charts.replace(outputs, times, withOthers(shown, times, others));
+    wanted?.choose();
+    if (section("balance-charts")) charts.replace(section("balance-charts"), times, balance);
+    parts.against?.update();
+    parts.picture?.update(bonds);
+  };
+  parts.live = await tuning(take);
   await draw();
-  return { clock, charts, view, picture, live, against, faults };
+  /**
+   * Shows another report, an HTML text, in the place of this one, where it is one of the same sections, charts and
+   * bodies; whether it is. What the reader has chosen stays, and so does the time.
+   */
+  window.renew = async (html) => {
+    const page = new DOMParser().parseFromString(html, "text/html");
+    const next = dataOf(page);
+    if (!isOfOneKind([document, data], [page, next])) return false;
+    data = next;
+    const bonds = JSON.parse(await unpacked("bonds", page));
+    take(data, bonds);
+    const isDrawnAnew = bringOver(page);
+    if (data.modes) swings?.(section("modes"), data.modes);
+    if (isDrawnAnew) {
+      parts.picture?.end();
+      parts.picture = await drawn(page);
+    }
+    parts.live = await tuning(take, page);
+    await draw(page);
+    return true;
+  };
+  return parts;
 }
 
 /** Fills the page as its address asks for: as it is, under test, or with the machine alone. */

@@ -39,30 +39,34 @@ export function poses(modes, mode, factor, now) {
   });
 }
 
-export function modes(section, data, view, clock) {
-  const buttons = [...section.querySelectorAll("button[data-mode]")];
+/** What fills the section of the modes of a machine with their data, once or again: buttons that let it swing. */
+export function modes(view, clock) {
+  let buttons = [];
   const stop = () => {
     view.swinging(null);
     buttons.forEach((button) => button.setAttribute("aria-pressed", "false"));
   };
-  for (const button of buttons) {
-    const mode = data.modes[Number(button.dataset.mode)];
-    button.hidden = mode.bodies.every(({ translation, rotation }) => size(translation) + size(rotation) === 0);
-    button.addEventListener("click", () => {
-      const starts = button.getAttribute("aria-pressed") !== "true";
-      stop();
-      if (!starts) return;
-      clock.pause();
-      button.setAttribute("aria-pressed", "true");
-      const factor = visible(mode, view.size);
-      view.swinging((now) => poses(data, mode, factor, now));
-      view.place.scrollIntoView({ block: "nearest" });
-    });
-  }
   // The run goes on where the reader plays or scrubs it.
   let time = clock.time;
   clock.subscribe((now) => {
     if (view.swing && (now.playing || now.time !== time)) stop();
     time = now.time;
   });
+  return (section, data) => {
+    buttons = [...section.querySelectorAll("button[data-mode]")];
+    for (const button of buttons) {
+      const mode = data.modes[Number(button.dataset.mode)];
+      button.hidden = mode.bodies.every(({ translation, rotation }) => size(translation) + size(rotation) === 0);
+      button.addEventListener("click", () => {
+        const starts = button.getAttribute("aria-pressed") !== "true";
+        stop();
+        if (!starts) return;
+        clock.pause();
+        button.setAttribute("aria-pressed", "true");
+        const factor = visible(mode, view.size);
+        view.swinging((now) => poses(data, mode, factor, now));
+        view.place.scrollIntoView({ block: "nearest" });
+      });
+    }
+  };
 }

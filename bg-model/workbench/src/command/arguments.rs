@@ -346,9 +346,10 @@ pub struct ReportArguments {
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, value_parser = real, allow_negative_numbers = true)]
     pub modes: Option<Option<f64>>,
 
-    /// Keep the picture of the graph in this file, and take it from there while the graph is the same
+    /// Write the page for a frame of another page, which has its style and script and replaces it again and again: no
+    /// CSV file, and the picture of the graph is kept in this file and taken from there while the graph is the same
     #[arg(long, value_name = "FILE", hide = true)]
-    pub picture: Option<PathBuf>,
+    pub frame: Option<PathBuf>,
 
     /// Show an SVG file in the report, such as a diagram of `precision` or `linearize`; can be given again and again
     #[arg(long, value_name = "FILE.svg")]

@@ -12,7 +12,7 @@ use crate::live::{Module, ModuleError};
 use crate::program::Program;
 use crate::show::page::Linearised;
 use crate::show::page::film::Film;
-use crate::show::shown::PageFiles;
+use crate::show::shown::{PageFiles, PageForm};
 
 /// What a report is to show beside the run.
 pub struct Look {
@@ -22,7 +22,7 @@ pub struct Look {
     pub drawings: Vec<(String, String)>,
     /// Where to linearise, if at all: at a time, s, or at the equilibrium.
     pub modes: Option<Option<f64>>,
-    /// Where the picture of the graph is kept, for another report of it.
+    /// Of a page in a frame, where the picture of the graph is kept for another report of it.
     pub picture: Option<PathBuf>,
     /// How the run is integrated.
     pub integration: IntegrationArguments,
@@ -31,10 +31,11 @@ pub struct Look {
 }
 
 pub fn report(program: &Program, arguments: &ReportArguments) -> Result<ExitCode, InputError> {
-    let ReportArguments { run, glb, modes, show, live, picture } = arguments;
+    let ReportArguments { run, glb, modes, show, live, frame } = arguments;
     let name = program.texts.stem();
     let glb = glb.then(|| format!("{name}.glb"));
-    let files = PageFiles { page: format!("{name}.html"), figures: false, glb };
+    let form = if frame.is_some() { PageForm::Framed } else { PageForm::Whole };
+    let files = PageFiles { page: format!("{name}.html"), form, figures: false, glb };
     let drawings = show.iter().map(|path| drawing(path)).collect::<Result<_, _>>()?;
     check_time("--modes", modes.flatten())?;
     if live.is_some() && program.texts.file.is_some() {
@@ -42,7 +43,7 @@ pub fn report(program: &Program, arguments: &ReportArguments) -> Result<ExitCode
     }
     let integration = run.integration.clone();
     let module = live.as_ref().map(|file| Module::from(file.clone()));
-    let look = Look { files, drawings, modes: *modes, picture: picture.clone(), integration, module };
+    let look = Look { files, drawings, modes: *modes, picture: frame.clone(), integration, module };
     simulate(program, run, Some(&look))
 }
 
@@ -58,6 +59,11 @@ fn drawing(path: &Path) -> Result<(String, String), InputError> {
 }
 
 impl Look {
+    /// Whether the page is for a frame.
+    pub fn is_framed(&self) -> bool {
+        self.files.form == PageForm::Framed
+    }
+
     /// The modes, where they are wanted, or a sentence why there are none: of a machine that has no equilibrium, or does
     /// not come to the instant, the rest of the page stands.
     pub fn modes(&self, machine: &dyn Machine) -> Result<Option<Result<Linearised, String>>, InputError> {

@@ -26,7 +26,7 @@ use crate::run::summary::Summary;
 use crate::show::output::{Claimed, OutputError, Places};
 use crate::show::page::film::Film;
 use crate::show::page::{Parameter, Views};
-use crate::show::picture;
+use crate::show::picture::Drawn;
 use crate::show::shown::{Exhibits, PageFiles};
 use crate::show::signals::Drawing;
 
@@ -48,6 +48,7 @@ pub fn simulate(program: &Program, arguments: &RunArguments, look: Option<&Look>
     };
     let (tables, own) = (arguments.trajectory.tables(), arguments.trajectory.form_of_csv());
     let places = Places::new(&arguments.out, tables, own, page, figures.unwrap_or_default());
+    let places = if look.is_some_and(Look::is_framed) { places.without_own_table() } else { places };
     let spoken = Spoken { as_json: arguments.json, is_aside: places.has_standard_output() };
     let live = match look.and_then(|look| look.module.as_ref()) {
         Some(module) => Some(Live {
@@ -193,15 +194,14 @@ pub(super) fn claimed_and_run<C>(
     let from = begin.state(machine)?;
     let modes = look.map(|look| look.modes(machine)).transpose()?.flatten();
     let claimed = claim()?;
-    let mut outcome = follow(machine, request, from.as_ref())?;
     let description = machine.description();
-    let views = look.map_or_else(Views::default, |look| {
-        let svg = look
-            .picture
-            .as_deref()
-            .map_or_else(|| picture::svg(description), |file| picture::svg_kept(description, file));
-        Film::taken(description, &mut outcome.run).views(modes, svg)
+    let drawing = look.map(|look| match &look.picture {
+        None => Drawn::begun(description),
+        Some(file) => Drawn::begun_or_kept(description, file.clone()),
     });
+    let mut outcome = follow(machine, request, from.as_ref())?;
+    let views = drawing
+        .map_or_else(Views::default, |drawing| Film::taken(description, &mut outcome.run).views(modes, drawing.svg()));
     Ok((outcome, views, claimed))
 }
 

@@ -31,7 +31,7 @@ use crate::show::page::film::Film;
 #[cfg(not(target_arch = "wasm32"))]
 use crate::show::page::page;
 use crate::show::page::{Balance, Bonds, Data, Parameter, Report, page_beside};
-use crate::show::picture;
+use crate::show::picture::Drawn;
 
 #[cfg(not(target_arch = "wasm32"))]
 pub use module::{Module, ModuleError};
@@ -102,8 +102,7 @@ pub fn answer(program: &Program, text: &str) -> String {
 /// # Errors
 /// Why there is no such run: a sentence.
 pub fn report(program: &Program, order: &Order) -> Result<String, String> {
-    let page = |made: Made<'_>| Ok(made.page(|report| page_beside(report, order))?);
-    made(program, order, &|_| true).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
+    paged(program, order, &|_| true, |report| page_beside(report, Some(order)))
 }
 
 /// The same in one file with all that it needs, without sliders; `told` is asked after each step, with the part that is
@@ -113,8 +112,28 @@ pub fn report(program: &Program, order: &Order) -> Result<String, String> {
 /// Why there is no such run: a sentence.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn whole_report(program: &Program, order: &Order, told: &dyn Fn(f64) -> bool) -> Result<String, String> {
-    let page = |made: Made<'_>| Ok(made.page(page)?);
-    made(program, order, told).and_then(page).map_err(|refusal: Refusal| refusal.to_string())
+    paged(program, order, told, page)
+}
+
+/// The page of the run that the order asks for, as `page` writes it.
+fn paged(
+    program: &Program,
+    order: &Order,
+    told: &dyn Fn(f64) -> bool,
+    page: impl FnOnce(&Report<'_>) -> String,
+) -> Result<String, String> {
+    let paged = || {
+        let drawing = Drawn::begun(asked(program, order)?.description);
+        Ok(made(program, order, told)?.page(drawing, page)?)
+    };
+    paged().map_err(|refusal: Refusal| refusal.to_string())
+}
+
+/// The scene that an order asks for.
+fn asked<'a>(program: &'a Program, order: &Order) -> Result<&'a Scene, Refusal> {
+    let models = &program.models;
+    let scene = models.named(&order.scene).filter(|scene| models.maker().has(scene.index));
+    scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))
 }
 
 #[cfg(target_arch = "wasm32")]
@@ -152,8 +171,7 @@ struct Made<'a> {
 /// Runs a scene as it is asked for; `told` is asked after each step, with the part that is done, whether to go on.
 fn made<'a>(program: &'a Program, order: &Order, told: &dyn Fn(f64) -> bool) -> Result<Made<'a>, Refusal> {
     let models = &program.models;
-    let scene = models.named(&order.scene).filter(|scene| models.maker().has(scene.index));
-    let scene = scene.ok_or_else(|| Refusal::Scene(order.scene.clone()))?;
+    let scene = asked(program, order)?;
     let mut values = models.defaults();
     order.parameters.iter().try_for_each(|(name, value)| values.set(name, *value))?;
     let inputs: Vec<Input> = order.inputs.iter().map(Setting::input).collect::<Result<_, _>>()?;
@@ -209,8 +227,8 @@ impl Made<'_> {
         })
     }
 
-    /// It as a page.
-    fn page(&self, page: impl FnOnce(&Report<'_>) -> String) -> Result<String, MissingColumn> {
+    /// It as a page, with the graph as it is drawn.
+    fn page(&self, drawing: Drawn, page: impl FnOnce(&Report<'_>) -> String) -> Result<String, MissingColumn> {
         let Self { program, scene, outcome: Outcome { run, .. }, film, rows, values, .. } = self;
         let rows = run.at(rows).times;
         let report = Report {
@@ -224,7 +242,7 @@ impl Made<'_> {
             figures: &[],
             others: &[],
             drawings: &[],
-            views: &film.views(None, picture::svg(scene.description)),
+            views: &film.views(None, drawing.svg()),
             live: None,
         };
         Ok(page(&report))

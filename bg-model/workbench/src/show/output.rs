@@ -82,12 +82,18 @@ impl Places {
         Self { tables, own, folder: (has_folder || own.is_some()).then(|| folder.to_owned()), figures, page }
     }
 
+    /// The same without a trajectory in the folder.
+    #[must_use]
+    pub fn without_own_table(self) -> Self {
+        Self { own: None, ..self }
+    }
+
     /// The names of the files that may go into the folder.
     #[must_use]
     pub fn names(&self) -> Vec<String> {
         let csv = self.own.map(|_| CSV);
         let names = csv.into_iter().chain([TEXT, JSON]).map(str::to_owned);
-        let of_page = self.page.iter().flat_map(|PageFiles { page, figures, glb }| {
+        let of_page = self.page.iter().flat_map(|PageFiles { page, figures, glb, .. }| {
             let figures = self.figures.iter().filter(|_| *figures).map(|figure| figure.file.clone());
             std::iter::once(page.clone()).chain(glb.clone()).chain(figures)
         });
@@ -232,6 +238,7 @@ impl fmt::Display for Written {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::show::shown::PageForm;
 
     fn figures() -> Vec<Figure> {
         let figure = |file: &str| Figure {
@@ -259,12 +266,14 @@ mod tests {
         let alone = places(&[csv], None, Vec::new());
         assert_eq!((files(&alone), alone.folder), (vec![csv.to_owned()], None));
         assert_eq!(places(&[], None, Vec::new()).names(), [CSV, TEXT, JSON]);
-        let report = PageFiles { page: "p.html".to_owned(), figures: false, glb: Some("p.glb".to_owned()) };
+        let form = PageForm::Whole;
+        let report = PageFiles { page: "p.html".to_owned(), form, figures: false, glb: Some("p.glb".to_owned()) };
         let report = places(&[csv], Some(report), figures());
         assert_eq!(
             (report.folder.as_deref(), report.names().join(" ").as_str()),
             (Some(out), "summary.txt summary.json p.html p.glb")
         );
+        assert_eq!(places(&[], page(), figures()).without_own_table().names().len(), 5);
         // The place that the trajectory has anyway.
         let usual = places(&[&out.join(CSV)], page(), figures());
         assert_eq!((files(&usual), usual.names().len()), (Vec::new(), 6));

@@ -4,7 +4,7 @@
 
 use std::collections::BTreeMap;
 #[cfg(not(target_arch = "wasm32"))]
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use bg_model::description::{BondEnd, Description};
 use bg_picture::{Bond, End, Graph, Node, Part};
@@ -38,8 +38,52 @@ pub fn svg(description: &Description) -> String {
     bg_picture::svg(&graph(description), bg_picture::Level::Full)
 }
 
-/// The same, taken from a file where that has the picture of this very graph, else drawn and kept there: drawing takes
-/// longer than a run. A file that cannot be used is as none.
+/// A picture that is being drawn in a thread of its own, since that may take longer than a run; in a page, which has no
+/// threads, when it is asked for.
+pub struct Drawn(Pending);
+
+#[cfg(target_arch = "wasm32")]
+type Pending = &'static Description;
+#[cfg(not(target_arch = "wasm32"))]
+type Pending = std::thread::JoinHandle<String>;
+
+impl Drawn {
+    /// Begins to draw the whole graph of a description.
+    ///
+    /// # Panics
+    /// The machine has no memory for a thread.
+    #[must_use]
+    pub fn begun(description: &'static Description) -> Self {
+        Self(cfg_select! {
+            target_arch = "wasm32" => description,
+            _ => std::thread::spawn(move || svg(description)),
+        })
+    }
+
+    /// The same by [`svg_kept`].
+    ///
+    /// # Panics
+    /// As [`Drawn::begun`].
+    #[cfg(not(target_arch = "wasm32"))]
+    #[must_use]
+    pub fn begun_or_kept(description: &'static Description, file: PathBuf) -> Self {
+        Self(std::thread::spawn(move || svg_kept(description, &file)))
+    }
+
+    /// The picture, as soon as it is there: an SVG text.
+    ///
+    /// # Panics
+    /// Drawing has panicked.
+    #[must_use]
+    pub fn svg(self) -> String {
+        cfg_select! {
+            target_arch = "wasm32" => svg(self.0),
+            _ => self.0.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)),
+        }
+    }
+}
+
+/// The same, taken from a file where that has the picture of this very graph, else drawn and kept there. A file that cannot be used is as none.
 #[cfg(not(target_arch = "wasm32"))]
 #[must_use]
 pub fn svg_kept(description: &Description, file: &Path) -> String {

@@ -17,17 +17,28 @@ use crate::show::page::{self, Parameter, Report, Views};
 pub struct PageFiles {
     /// The name of the page.
     pub page: String,
+    /// Whether it has everything in it.
+    pub form: PageForm,
     /// Whether the figures have files beside it.
     pub figures: bool,
     /// The name of the machine in motion as binary glTF, where that is wanted.
     pub glb: Option<String>,
 }
 
+/// What a page has in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PageForm {
+    /// Everything: it can be opened anywhere.
+    Whole,
+    /// For a frame of a page that has its style and script.
+    Framed,
+}
+
 impl PageFiles {
     /// Those of a run: a page without the machine, and the figures.
     #[must_use]
     pub fn of_run() -> Self {
-        Self { page: "index.html".to_owned(), figures: true, glb: None }
+        Self { page: "index.html".to_owned(), form: PageForm::Whole, figures: true, glb: None }
     }
 }
 
@@ -94,7 +105,7 @@ impl Page<'_> {
             figures.iter().filter(|(figure, _)| exhibits.is_own(figure)).cloned().collect();
         let Exhibits { description, scene, parameters, others, drawings, views, live } = **exhibits;
         let figures = &own;
-        page::page(&Report {
+        let report = Report {
             texts,
             description,
             scene,
@@ -107,6 +118,10 @@ impl Page<'_> {
             drawings,
             views,
             live,
-        })
+        };
+        match self.files.form {
+            PageForm::Whole => page::page(&report),
+            PageForm::Framed => page::page_beside(&report, None),
+        }
     }
 }

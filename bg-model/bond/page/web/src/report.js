@@ -1,5 +1,6 @@
 // The report in its frame.
-// In: its HTML. Out: a frame that takes the place of the one before when it is there, where that was being read.
+// In: its HTML. Out: a frame with it, where the one before was being read: the same frame where the report is one of the
+// same sections, charts and bodies, else another one that takes its place when it is there.
 
 import { element } from "./elements.js";
 
@@ -7,12 +8,18 @@ import { element } from "./elements.js";
 const PATIENCE = 1500;
 
 /** Shows the report; the promise is kept when it moves. */
-export function show(pane, html) {
+export async function show(pane, html) {
   const before = pane.querySelector("iframe:not(.next)");
   for (const frame of pane.querySelectorAll("iframe.next")) frame.remove();
+  const renew = before?.contentWindow.renew;
+  if (!renew || !(await renew(html).catch(() => false))) await replace(pane, before, html);
+}
+
+/** Shows the report in a frame that takes the place of `before`. */
+function replace(pane, before, html) {
   const next = element("iframe", { class: "next", title: "Report" });
   pane.append(next);
-  const kept = new Promise((resolve) => {
+  return new Promise((resolve) => {
     const arrive = () => {
       if (!next.isConnected) return;
       next.contentWindow.scrollTo(before?.contentWindow.scrollX ?? 0, before?.contentWindow.scrollY ?? 0);
@@ -28,5 +35,4 @@ export function show(pane, html) {
     document.write(html);
     document.close();
   });
-  return kept;
 }

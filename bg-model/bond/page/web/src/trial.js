@@ -78,9 +78,11 @@ async function found(page, motion, verdict) {
   verdict.marked = mark.textContent;
   verdict.fault = document.querySelector("#faults li").textContent;
   verdict.old = document.querySelector("#report.old") !== null;
+  const kept = frame();
   retype(page.editor, "angle: radd = 0.5", "angle: rad = 0.75");
   await until("no fault", () => document.getElementById("faults").hidden && isThere());
   verdict.corrected = inFrame("#parameters td.number").textContent;
+  verdict.renewed = frame() === kept;
 
   // A slider of the report, which this page's worker runs the model for.
   const slider = inFrame("#controls input[type=range]");

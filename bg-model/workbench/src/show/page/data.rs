@@ -4,6 +4,7 @@
 //! the CSV file is the CSV's number with all its digits; others have six digits, as have poses and forces. A quantity
 //! that never changes is a single number.
 
+use bg_analysis::samples::{DIGITS, Instant, Series, Shared, instants, rounded};
 use bg_model::description::{BondInfo, Description};
 use bg_model::simulation::Recording;
 use serde::Serialize;
@@ -12,7 +13,6 @@ use super::animation::{Animation, BodyTrack, JointTrack, NamedPoint, Shape, Soli
 use super::charts::{self, Balance};
 use super::modes::Modes;
 use super::picture::Picture;
-use super::samples::{DIGITS, Instant, Series, instants, rounded};
 
 /// All data of a page.
 #[derive(Debug, Serialize)]
@@ -305,16 +305,8 @@ impl Bonds {
         if picture.bonds.is_empty() || picture.times.is_empty() {
             return None;
         }
-        let mut series = Vec::new();
-        let mut known = std::collections::BTreeMap::new();
-        let mut place = |values: &Vec<f64>| {
-            let near: Vec<f64> = values.iter().map(|&value| rounded(value, DIGITS_OF_BONDS)).collect();
-            let bits: Vec<u64> = near.iter().map(|value| value.to_bits()).collect();
-            *known.entry(bits).or_insert_with(|| {
-                series.push(near);
-                series.len() - 1
-            })
-        };
+        let mut shared = Shared::default();
+        let mut place = |values: &Vec<f64>| shared.place(values, DIGITS_OF_BONDS);
         let bonds = infos.iter().zip(&picture.bonds).map(|(info, bond)| Bond {
             name: format!("{} \u{2192} {}", info.from, info.to),
             effort_unit: charts::unit(info.effort),
@@ -323,6 +315,7 @@ impl Bonds {
             flow: bond.flow.iter().map(&mut place).collect(),
         });
         let bonds = bonds.collect();
+        let series = shared.series();
         let curves = series.iter().filter(|values| changes(values)).count();
         let stride = (picture.times.len() * curves).div_ceil(MOST_OF_BONDS).max(1);
         let every = |values: &[f64]| -> Vec<f64> { values.iter().copied().step_by(stride).collect() };

@@ -8,6 +8,7 @@ use super::{Linearised, Parameter};
 use crate::ask::parameters::{number, one_line};
 use crate::run::summary::Summary;
 use crate::show::markup::{escaped, with_code, write_into};
+use bg_analysis::samples::rounded;
 
 /// What stands of the summary at the head of the page.
 const FACTS: [&str; 6] = ["scene", "simulated time", "integrator", "states", "steps", "wall time"];
@@ -116,7 +117,7 @@ pub fn modes(page: &mut String, Linearised { modes, place, .. }: &Linearised, ca
 
 /// Five digits.
 fn short(value: f64) -> String {
-    number(super::samples::rounded(value, 5)).replace('-', "\u{2212}")
+    number(rounded(value, 5)).replace('-', "\u{2212}")
 }
 
 /// The statements with what was measured, as a table below its heading.

@@ -21,7 +21,6 @@ pub mod order;
 mod packed;
 mod picture;
 mod report;
-mod samples;
 mod settings;
 
 use bg_model::description::ParameterInfo;

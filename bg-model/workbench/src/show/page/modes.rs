@@ -6,8 +6,8 @@
 use serde::Serialize;
 
 use super::animation::Animation;
-use super::samples::{DIGITS, rounded};
 use bg_analysis::linear::{Mode, Part};
+use bg_analysis::samples::{DIGITS, rounded};
 
 /// Modes and what they swing about.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -84,17 +84,19 @@ pub fn page(report: &Report<'_>) -> String {
     put_together(report, live.map(|live| &live.order), &style, &start, texts)
 }
 
-/// The page of a run that another page has made, in a frame there: that page's folder has style and script,
-/// `report.css`, `beside.js` and `report.js`, and that page itself runs the model again.
+/// The page of a run that another page shows in a frame: that page's folder has style and script, `report.css`,
+/// `beside.js` and `report.js`. Where there is an `order`, which made the run, that page itself runs the model again, and
+/// the machine moves at once.
 #[must_use]
-pub fn page_beside(report: &Report<'_>, order: &Order) -> String {
+pub fn page_beside(report: &Report<'_>, order: Option<&Order>) -> String {
     let text = |(id, json): &(&str, String)| {
         let json = json.replace('<', "\\u003c");
         format!("<script type=\"application/json\" id=\"{id}\">{json}</script>\n")
     };
     let style = "<link rel=\"stylesheet\" href=\"report.css\">\n";
-    let start = "<script src=\"beside.js\"></script>\n<script src=\"report.js\"></script>\n";
-    put_together(report, Some(order), style, start, |texts| texts.iter().map(text).collect())
+    let plays = if order.is_some() { " data-plays" } else { "" };
+    let start = format!("<script src=\"beside.js\"{plays}></script>\n<script src=\"report.js\"></script>\n");
+    put_together(report, order, style, &start, |texts| texts.iter().map(text).collect())
 }
 
 /// The page with this style, these scripts that start it, and the JSON texts that it reads, as `texts` writes them;

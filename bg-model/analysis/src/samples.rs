@@ -1,6 +1,8 @@
 //! The samples that a page has of a run: all rows of its CSV file and as many between them as a page may hold.
 //!
-//! In: the instants of a run and of the rows. Out: which of them, and how their numbers are written.
+//! In: the instants of a run and of the rows, series. Out: which instants, and how the numbers of series are written.
+
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
@@ -23,6 +25,7 @@ pub struct Instant {
 /// The samples of a page with `curves` curves that move and may have `numbers` numbers together: the rows, every n-th
 /// of them where they are too many, and between them other samples of the run as far as there is room. Both lists
 /// ascend; rows are instants of the run.
+#[must_use]
 pub fn instants(times: &[f64], rows: &[f64], curves: usize, numbers: usize) -> Vec<Instant> {
     let most = (numbers / curves.max(1)).clamp(FEWEST, MOST);
     let mut wanted = rows.iter().peekable();
@@ -64,6 +67,7 @@ pub enum Series {
 
 impl Series {
     /// The series of these values.
+    #[must_use]
     pub fn new(values: Vec<f64>) -> Self {
         match values.split_first() {
             Some((first, rest)) if rest.iter().all(|value| value.to_bits() == first.to_bits()) => Self::Still(*first),
@@ -77,7 +81,38 @@ impl Series {
     }
 }
 
+/// Series of numbers to few digits. Those that are the same stand here once.
+#[derive(Clone, Debug, Default)]
+pub struct Shared {
+    series: Vec<Vec<f64>>,
+    /// Places by the bits of numbers, as they were given and to few digits.
+    given: BTreeMap<Vec<u64>, usize>,
+    near: BTreeMap<Vec<u64>, usize>,
+}
+
+impl Shared {
+    /// The place of the series of these values, each to `digits` digits; of all series to as many.
+    pub fn place(&mut self, values: &[f64], digits: usize) -> usize {
+        let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<u64>>();
+        let Self { series, given, near } = self;
+        *given.entry(bits(values)).or_insert_with(|| {
+            let rounded: Vec<f64> = values.iter().map(|&value| rounded(value, digits)).collect();
+            *near.entry(bits(&rounded)).or_insert_with(|| {
+                series.push(rounded);
+                series.len() - 1
+            })
+        })
+    }
+
+    /// The series by their places.
+    #[must_use]
+    pub fn series(&self) -> &[Vec<f64>] {
+        &self.series
+    }
+}
+
 /// `value` to `digits` digits, 1 at least; without the sign of a zero.
+#[must_use]
 pub fn rounded(value: f64, digits: usize) -> f64 {
     if value.is_nan() {
         // One of them: native and in a browser they have other bits.
@@ -146,6 +181,15 @@ mod tests {
         assert!(thin.iter().all(|instant| instant.is_row), "rows come first");
         assert_eq!((thin[0].index, thin.last().unwrap().index), (0, 2500));
         assert!(instants(&[], &[], 3, 48_000).is_empty());
+    }
+
+    #[test]
+    fn series_that_are_the_same_to_few_digits_stand_once() {
+        let mut shared = Shared::default();
+        let places = [[1.0, 2.0], [1.0, 3.0], [1.000_000_1, 2.0], [1.0, 2.0], [0.0, -0.0], [-0.0, 0.0]];
+        let places = places.map(|values| shared.place(&values, 5));
+        assert_eq!((places, shared.series().len()), ([0, 1, 0, 0, 2, 2], 3));
+        assert_eq!(shared.series()[0], [1.0, 2.0]);
     }
 
     #[test]
