@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::expr::{Environment, Id, Symbol, derivative, evaluate, substitute};
 use crate::program::{Request, schedule};
 use crate::random::Random;
-use crate::system::equations::{Origin, State};
+use crate::system::equations::{Origin, State, StateEquations};
 use crate::system::jacobian::{self, Jacobian};
 use crate::system::reduce::reaction;
 use crate::system::reduce::tests::{Draw, Scene, scene};
