@@ -28,7 +28,7 @@ mod partitioned;
 mod radau;
 pub(crate) mod rk4;
 mod rosenbrock;
-mod side_by_side;
+pub(crate) mod side_by_side;
 mod steps;
 mod taylor;
 mod tolerances;

@@ -107,14 +107,14 @@ impl<S: Copy, const W: usize, const R: usize> Stack<S, W, R> {
 }
 
 /// A calculation for each state.
-pub(super) trait OfEach {
+pub(crate) trait OfEach {
     /// Calculates it of `W` states from `first` on.
     fn of<const W: usize>(&mut self, first: usize);
 }
 
 /// Calculates it of so many states.
 #[inline(always)]
-pub(super) fn for_each(states: usize, calculation: &mut impl OfEach) {
+pub(crate) fn for_each(states: usize, calculation: &mut impl OfEach) {
     let mut first = 0;
     while first + SIDE_BY_SIDE <= states {
         calculation.of::<SIDE_BY_SIDE>(first);
@@ -128,7 +128,7 @@ pub(super) fn for_each(states: usize, calculation: &mut impl OfEach) {
 
 /// The numbers from `first` on.
 #[inline(always)]
-pub(super) fn some<S: Copy, const W: usize>(of: &[S], first: usize) -> [S; W] {
+pub(crate) fn some<S: Copy, const W: usize>(of: &[S], first: usize) -> [S; W] {
     *of[first..].first_chunk().expect("there is a number for each state")
 }
 

@@ -18,6 +18,7 @@ mod sampling;
 mod settings;
 mod sizes;
 mod step_size;
+mod turning;
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;

@@ -14,9 +14,10 @@ use alloc::vec;
 use alloc::vec::Vec;
 
 use super::observer::{Inside, Observer, Switching};
+use super::turning::{Ends, is_any_outside, mark};
 use crate::model::dynamics::Machine;
 use crate::solve::event::minimum;
-use crate::solve::integrator::between;
+use crate::solve::integrator::{Arch, between};
 
 /// A value of an output and its instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -115,6 +116,8 @@ struct Window {
     largest: Vec<f64>,
     /// The instants of both, s.
     at: Vec<[f64; 2]>,
+    /// The machine's vectors.
+    arch: Arch,
     /// What is below this, or above that, leads beyond what is known.
     floor: Vec<f64>,
     ceiling: Vec<f64>,
@@ -124,7 +127,7 @@ impl Window {
     fn new([from, to]: [f64; 2], outputs: usize) -> Self {
         let [least, largest] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| vec![end; outputs]);
         let (floor, ceiling) = (least.clone(), largest.clone());
-        Self { from, to, least, largest, at: vec![[from; 2]; outputs], floor, ceiling }
+        Self { from, to, least, largest, at: vec![[from; 2]; outputs], floor, ceiling, arch: Arch::new() }
     }
 
     /// Whether a time from `from` up to `to` (s) has a part in it.
@@ -137,7 +140,7 @@ impl Window {
         if t < self.from || t > self.to {
             return;
         }
-        if !is_any_outside(values, &self.least, &self.largest) {
+        if !is_any_outside(self.arch, values, [&self.least, &self.largest]) {
             return;
         }
         for (index, &value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
@@ -178,22 +181,6 @@ impl Window {
     }
 }
 
-/// Whether a value is below its least or above its largest one. In groups without a choice for each value: several are
-/// compared at once.
-fn is_any_outside(values: &[f64], least: &[f64], largest: &[f64]) -> bool {
-    const AT_ONCE: usize = 8;
-    let ((groups, values), (least_of, least), (largest_of, largest)) =
-        (values.as_chunks::<AT_ONCE>(), least.as_chunks::<AT_ONCE>(), largest.as_chunks::<AT_ONCE>());
-    let mut outside = [0; AT_ONCE];
-    for ((values, least), largest) in groups.iter().zip(least_of).zip(largest_of) {
-        for i in 0..AT_ONCE {
-            outside[i] |= u64::from((values[i] < least[i]) | (values[i] > largest[i]));
-        }
-    }
-    let mut others = values.iter().zip(least).zip(largest);
-    outside != [0; AT_ONCE] || others.any(|((value, least), largest)| value < least || value > largest)
-}
-
 fn take(windows: &mut [Window], t: f64, values: &[f64]) {
     windows.iter_mut().for_each(|window| window.take(t, values));
 }
@@ -213,6 +200,8 @@ pub struct PeakMonitor<'a> {
     /// Room for a state and for outputs.
     x: Vec<f64>,
     row: Vec<f64>,
+    /// The machine's vectors.
+    arch: Arch,
 }
 
 /// The outputs at the last ends of parts.
@@ -250,10 +239,6 @@ type Part = [f64; 2];
 const DIFFERENCE: f64 = 1e-6;
 /// The order up to which a step is one part: an oscillation makes less than half a turn in it where errors are small.
 const ORDER_OF_ONE: f64 = 8.0;
-/// A parabola turns in a part that changes it by less than half of its bend, and leads beyond the ends by an eighth of that
-/// at most. Four times as much is looked at.
-const TURN: f64 = 2.0;
-const BEYOND: f64 = 0.5;
 /// How far the middle may be off the cubic, in parts of the range in the step, for the cubic to be the course.
 const RESOLVED: f64 = 0.02;
 /// In how many pieces a part is searched that the cubic does not show.
@@ -286,6 +271,7 @@ impl<'a> PeakMonitor<'a> {
             middle: row(),
             x: vec![0.0; of.states()],
             row: row(),
+            arch: Arch::new(),
         }
     }
 
@@ -309,24 +295,13 @@ impl<'a> PeakMonitor<'a> {
 
     /// Whether an output may turn in a part of `h` (s) that ends at `t` (s) in `to`, beyond what is known; marks which do.
     fn may_turn(&mut self, t: f64, h: f64) -> bool {
-        let Self { windows, past, to, may_turn, .. } = self;
+        let Self { windows, past, to, may_turn, arch, .. } = self;
         may_turn.fill(false);
         let (values, before, ratio) = past.expected(h);
         let mut any = false;
         for window in windows.iter().filter(|window| window.meets(t - h, t)) {
-            let ends = values.iter().zip(before).zip(to.iter());
-            let bounds = window.floor.iter().zip(&window.ceiling);
-            // Without a choice for each output several are looked at at once.
-            for ((marked, ((&from, &before), &to)), (&floor, &ceiling)) in may_turn.iter_mut().zip(ends).zip(bounds) {
-                let change = to - from;
-                // By how much it bends: its change less that which is expected.
-                let bend = (change - (from - before) * ratio).abs();
-                let reach = BEYOND * bend;
-                let [low, high] = if from < to { [from, to] } else { [to, from] };
-                let leads = (low - reach < floor) | (high + reach > ceiling);
-                *marked |= (change.abs() <= TURN * bend) & leads;
-                any |= *marked;
-            }
+            let Window { floor, ceiling, .. } = window;
+            any |= mark(*arch, Ends { before, from: values, to, ratio, floor, ceiling }, may_turn);
         }
         any
     }
@@ -373,7 +348,7 @@ impl<'a> PeakMonitor<'a> {
         let [low, high] = part;
         self.slope(step, low, false);
         self.slope(step, high, true);
-        let Self { of, windows, past, to, may_turn, slopes, middle, x, row } = self;
+        let Self { of, windows, past, to, may_turn, slopes, middle, x, row, .. } = self;
         let half = 0.5 * (low + high);
         let t_half = if is_short { step.cubic(half, x) } else { step.state(half, x) };
         of.values(t_half, x, step.negative(), middle);
