@@ -5,6 +5,7 @@
 //! instants only ([`crate::system::System`]); a step never runs over such an instant.
 
 mod cause;
+mod extremes;
 mod history;
 #[cfg(feature = "std")]
 pub(crate) mod lanes;
@@ -18,16 +19,16 @@ mod sampling;
 mod settings;
 mod sizes;
 mod step_size;
-mod turning;
 
 use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 use nalgebra::{DVector, SVector};
 
+pub use extremes::{Peak, Peaks};
 pub use observer::{EachSample, EachStep, Inside, Observer, Switching};
 pub use ongoing::Ongoing;
-pub use peaks::{Peak, PeakMonitor, Peaks, Watched};
+pub use peaks::{PeakMonitor, Watched};
 pub use recording::{Column, MissingColumn, Part, Recorder, Recording};
 pub use settings::{Samples, Settings, Span};
 #[cfg(feature = "std")]

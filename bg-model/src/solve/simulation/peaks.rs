@@ -13,55 +13,11 @@
 use alloc::vec;
 use alloc::vec::Vec;
 
+use super::extremes::{Ends, Extremes, Peaks};
 use super::observer::{Inside, Observer, Switching};
-use super::turning::{Ends, is_any_outside, mark};
 use crate::model::dynamics::Machine;
 use crate::solve::event::minimum;
-use crate::solve::integrator::{Arch, between};
-
-/// A value of an output and its instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peak {
-    /// Time, s.
-    pub t: f64,
-    /// The output's value, in its unit.
-    pub value: f64,
-}
-
-/// Where an output is least and where it is largest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Peaks {
-    /// The least value.
-    pub least: Peak,
-    /// The largest value.
-    pub largest: Peak,
-}
-
-impl Peaks {
-    /// Those of an output that has one value.
-    const fn of(peak: Peak) -> Self {
-        Self { least: peak, largest: peak }
-    }
-
-    /// Those of values at `times` (s); none of no values.
-    #[must_use]
-    pub fn of_samples(times: &[f64], values: &[f64]) -> Option<Self> {
-        let samples = times.iter().zip(values).map(|(&t, &value)| Self::of(Peak { t, value }));
-        samples.reduce(Self::and)
-    }
-
-    /// Those of this and of a later time.
-    pub(crate) fn and(self, later: Self) -> Self {
-        let Self { mut least, mut largest } = self;
-        if later.least.value < least.value {
-            least = later.least;
-        }
-        if later.largest.value > largest.value {
-            largest = later.largest;
-        }
-        Self { least, largest }
-    }
-}
+use crate::solve::integrator::between;
 
 /// Functions of time and state whose peaks are looked for, other than the outputs themselves.
 pub trait Watched {
@@ -111,23 +67,12 @@ struct Window {
     /// From this instant on, s, and up to this one.
     from: f64,
     to: f64,
-    /// For each output the least and the largest value; infinity where none is known yet.
-    least: Vec<f64>,
-    largest: Vec<f64>,
-    /// The instants of both, s.
-    at: Vec<[f64; 2]>,
-    /// The machine's vectors.
-    arch: Arch,
-    /// What is below this, or above that, leads beyond what is known.
-    floor: Vec<f64>,
-    ceiling: Vec<f64>,
+    known: Extremes,
 }
 
 impl Window {
     fn new([from, to]: [f64; 2], outputs: usize) -> Self {
-        let [least, largest] = [f64::INFINITY, f64::NEG_INFINITY].map(|end| vec![end; outputs]);
-        let (floor, ceiling) = (least.clone(), largest.clone());
-        Self { from, to, least, largest, at: vec![[from; 2]; outputs], floor, ceiling, arch: Arch::new() }
+        Self { from, to, known: Extremes::new(from, outputs) }
     }
 
     /// Whether a time from `from` up to `to` (s) has a part in it.
@@ -140,44 +85,7 @@ impl Window {
         if t < self.from || t > self.to {
             return;
         }
-        if !is_any_outside(self.arch, values, [&self.least, &self.largest]) {
-            return;
-        }
-        for (index, &value) in values.iter().enumerate().filter(|(_, value)| value.is_finite()) {
-            let is_least = value < self.least[index];
-            let is_largest = value > self.largest[index];
-            if is_least {
-                (self.least[index], self.at[index][0]) = (value, t);
-            }
-            if is_largest {
-                (self.largest[index], self.at[index][1]) = (value, t);
-            }
-            if is_least || is_largest {
-                self.bound(index);
-            }
-        }
-    }
-
-    /// Sets from where on an output leads beyond what is known. Rounding moves a constant by less than counts.
-    fn bound(&mut self, index: usize) {
-        const OF_RANGE: f64 = 1e-9;
-        const OF_SIZE: f64 = 1e-6;
-        let [low, high] = [self.least[index], self.largest[index]];
-        let margin = OF_RANGE * (high - low).max(OF_SIZE * low.abs().max(high.abs()));
-        (self.floor[index], self.ceiling[index]) = (low - margin, high + margin);
-    }
-
-    /// Whether these values of an output lead beyond what is known: down, and up.
-    fn leads(&self, index: usize, [least, largest]: [f64; 2]) -> [bool; 2] {
-        [least < self.floor[index], largest > self.ceiling[index]]
-    }
-
-    /// The peaks of an output; none where no value is known.
-    fn peaks(&self, index: usize) -> Option<Peaks> {
-        let [from, to] = self.at[index];
-        let least = Peak { t: from, value: self.least[index] };
-        let largest = Peak { t: to, value: self.largest[index] };
-        (least.value <= largest.value).then_some(Peaks { least, largest })
+        self.known.take(t, values);
     }
 }
 
@@ -200,8 +108,6 @@ pub struct PeakMonitor<'a> {
     /// Room for a state and for outputs.
     x: Vec<f64>,
     row: Vec<f64>,
-    /// The machine's vectors.
-    arch: Arch,
 }
 
 /// The outputs at the last ends of parts.
@@ -271,14 +177,13 @@ impl<'a> PeakMonitor<'a> {
             middle: row(),
             x: vec![0.0; of.states()],
             row: row(),
-            arch: Arch::new(),
         }
     }
 
     /// The peaks of output `index` over the whole run; none of a run that has made no step.
     #[must_use]
     pub fn peaks(&self, index: usize) -> Option<Peaks> {
-        self.windows[0].peaks(index)
+        self.windows[0].known.peaks(index)
     }
 
     /// The same from the instant on that was given; none of a run that has not come there.
@@ -290,18 +195,17 @@ impl<'a> PeakMonitor<'a> {
     /// The peaks of output `index` in window `window`; none of a run that has not come there.
     #[must_use]
     pub fn peaks_in(&self, window: usize, index: usize) -> Option<Peaks> {
-        self.windows.get(window)?.peaks(index)
+        self.windows.get(window)?.known.peaks(index)
     }
 
     /// Whether an output may turn in a part of `h` (s) that ends at `t` (s) in `to`, beyond what is known; marks which do.
     fn may_turn(&mut self, t: f64, h: f64) -> bool {
-        let Self { windows, past, to, may_turn, arch, .. } = self;
+        let Self { windows, past, to, may_turn, .. } = self;
         may_turn.fill(false);
         let (values, before, ratio) = past.expected(h);
         let mut any = false;
         for window in windows.iter().filter(|window| window.meets(t - h, t)) {
-            let Window { floor, ceiling, .. } = window;
-            any |= mark(*arch, Ends { before, from: values, to, ratio, floor, ceiling }, may_turn);
+            any |= window.known.mark(Ends { before, from: values, to, ratio }, may_turn);
         }
         any
     }
@@ -375,7 +279,7 @@ impl<'a> PeakMonitor<'a> {
                     h,
                 };
                 let Some(beyond) = course.beyond() else { continue };
-                let leads = windows[place].leads(index, beyond);
+                let leads = windows[place].known.leads(index, beyond);
                 if leads == [false; 2] {
                     continue;
                 }
