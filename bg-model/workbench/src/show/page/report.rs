@@ -23,12 +23,15 @@ use crate::show::page::order::{Live, Order};
 const LOADER: &str = include_str!("../../../page/loader.js");
 #[cfg(not(target_arch = "wasm32"))]
 const SCRIPT: &str = include_str!("../../../page/dist/report.js");
-/// That of a page without a machine.
+/// The same packed, as `build.rs` makes it.
 #[cfg(not(target_arch = "wasm32"))]
-const PLAIN: &str = include_str!("../../../page/dist/plain.js");
-/// What runs the model of a live page.
+const PACKED: &str = include_str!(concat!(env!("OUT_DIR"), "/report.packed"));
+/// That of a page without a machine, packed.
 #[cfg(not(target_arch = "wasm32"))]
-const WORKER: &str = include_str!("../../../page/dist/worker.js");
+const PLAIN: &str = include_str!(concat!(env!("OUT_DIR"), "/plain.packed"));
+/// What runs the model of a live page, packed.
+#[cfg(not(target_arch = "wasm32"))]
+const WORKER: &str = include_str!(concat!(env!("OUT_DIR"), "/worker.packed"));
 const LICENCES: &str = include_str!("../../../page/dist/THIRD-PARTY.txt");
 #[cfg(not(target_arch = "wasm32"))]
 const STYLE: &str = include_str!("../../../page/dist/report.css");
@@ -72,13 +75,15 @@ pub struct Report<'a> {
 #[must_use]
 pub fn page(report: &Report<'_>) -> String {
     let live = report.live;
-    let more = live.map(|live| [("worker", WORKER.as_bytes()), ("module", &live.module[..])]);
-    let script = if moving(report.views).is_some() { SCRIPT } else { PLAIN };
-    let more: Vec<_> = [("script", script.as_bytes())].into_iter().chain(more.into_iter().flatten()).collect();
-    let texts = |texts: &[(&str, String)]| {
-        let texts = texts.iter().map(|(id, text)| (*id, text.as_bytes()));
-        let all = texts.chain(more.iter().copied());
-        all.map(|(id, bytes)| format!("<script type=\"text/plain\" id=\"{id}\">{}</script>\n", packed(bytes))).collect()
+    let script = if moving(report.views).is_some() { PACKED } else { PLAIN };
+    let texts = |texts: &[(&'static str, String)]| {
+        let mut all: Vec<(&str, String)> = texts.iter().map(|(id, text)| (*id, packed(text.as_bytes()))).collect();
+        all.push(("script", script.to_owned()));
+        if let Some(live) = live {
+            all.extend([("worker", WORKER.to_owned()), ("module", packed(&live.module))]);
+        }
+        let text = |(id, packed)| format!("<script type=\"text/plain\" id=\"{id}\">{packed}</script>\n");
+        all.into_iter().map(text).collect()
     };
     let (style, start) = (format!("<style>{STYLE}</style>\n"), format!("<script>\n{LOADER}</script>\n"));
     put_together(report, live.map(|live| &live.order), &style, &start, texts)
