@@ -62,7 +62,10 @@ impl Model {
         work: impl FnOnce(&Program, &Asked, &Seen) -> Result<T, Refused> + Send + 'static,
     ) -> PyResult<T> {
         let (program, (asked, raised)) = (Arc::clone(&self.program), question.parts());
-        let done = move |seen: &Seen| work(&program(), &Asked { interrupt: seen.interrupt(), ..asked }, seen);
+        let done = move |seen: &Seen| {
+            let (interrupt, progress) = (seen.interrupt(), seen.progress());
+            work(&program(), &Asked { interrupt, progress, ..asked }, seen)
+        };
         let found = interruptible(py, done)?;
         raised.nothing()?;
         found.map_err(refused)
@@ -404,7 +407,11 @@ impl Model {
         integrated(&mut asked, None, None, method, None, rtol, None)?;
         let all = |texts: Option<Texts>| texts.map(Texts::all).unwrap_or_default();
         let fit = Fit { data: measured(data)?, parameters: fit.all(), bounds: all(bounds), columns: all(columns) };
-        let found = self.done(py, asked, move |program, asked, _| calls::identify(program, asked, &fit))?;
+        let found = self.done(py, asked, move |program, asked, seen| {
+            calls::identify(program, asked, &fit, &|| {
+                seen.counted();
+            })
+        })?;
         told(py, found)
     }
 
@@ -444,7 +451,7 @@ impl Model {
             [minimize, maximize, subject, by].map(|texts| texts.map_or_else(Vec::new, Texts::all));
         let goals = optimize::Asked { minimize, maximize, subject, by, starts, points, steps, threads };
         let (sought, found) = self
-            .done(py, asked, move |program, asked, seen| calls::optimize(program, asked, &goals, &|| seen.goes_on()))?;
+            .done(py, asked, move |program, asked, seen| calls::optimize(program, asked, &goals, &|| seen.counted()))?;
         let told = told(py, optimize::report::json(&sought, &found))?;
         told.set_item("trials", of_parquet(py, optimize::report::trials(&sought, &found), PyDict::new(py))?)?;
         Ok(told)

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use bg_model::run::Interrupt;
+use bg_model::run::{Interrupt, Progress};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -22,10 +22,13 @@ const PATIENCE: Duration = Duration::from_millis(300);
 const PARTS: f64 = 1000.0;
 
 /// Something to do, as it sees who waits for it.
+#[derive(Default)]
 pub struct Seen {
     interrupt: Interrupt,
-    /// In parts of a thousand.
-    done: AtomicU32,
+    /// Of what knows how much it is.
+    progress: Progress,
+    /// Runs that have been made, of what does not know how many it needs.
+    runs: AtomicU32,
 }
 
 impl Seen {
@@ -39,10 +42,46 @@ impl Seen {
         self.interrupt.clone()
     }
 
+    /// What tells how far it is.
+    pub fn progress(&self) -> Progress {
+        self.progress.clone()
+    }
+
     /// Says which part is done, 0 to 1. Whether to go on.
     pub fn done(&self, part: f64) -> bool {
-        self.done.store((PARTS * part) as u32, Ordering::Relaxed);
+        self.progress.tell(part);
         self.goes_on()
+    }
+
+    /// Says that one run more has been made. Whether to go on.
+    pub fn counted(&self) -> bool {
+        self.runs.fetch_add(1, Ordering::Relaxed);
+        self.goes_on()
+    }
+
+    /// How far it is; none where it has not said anything.
+    fn reached(&self) -> Option<Reached> {
+        let (part, runs) = (self.progress.done(), self.runs.load(Ordering::Relaxed));
+        if part > 0.0 { Some(Reached::Part(part)) } else { (runs > 0).then_some(Reached::Runs(runs)) }
+    }
+}
+
+/// How far something is.
+#[derive(Clone, Copy)]
+enum Reached {
+    /// The part of it, 0 to 1.
+    Part(f64),
+    /// So many runs, of any number.
+    Runs(u32),
+}
+
+impl Reached {
+    /// In a bar's steps.
+    fn steps(self) -> f64 {
+        match self {
+            Self::Part(part) => (PARTS * part).floor(),
+            Self::Runs(runs) => f64::from(runs),
+        }
     }
 }
 
@@ -51,21 +90,25 @@ impl Seen {
 struct Bar(Option<Py<PyAny>>);
 
 impl Bar {
-    fn shown(py: Python<'_>) -> PyResult<Self> {
+    fn shown(py: Python<'_>, reached: Reached) -> PyResult<Self> {
         let Ok(tqdm) = py.import("tqdm.auto") else { return Ok(Self(None)) };
+        let (total, format) = match reached {
+            Reached::Part(_) => (Some(PARTS), "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}"),
+            Reached::Runs(_) => (None, "{n_fmt} runs, {elapsed}"),
+        };
         let options = PyDict::new(py);
-        options.set_item("total", PARTS)?;
+        options.set_item("total", total)?;
         options.set_item("leave", false)?;
-        options.set_item("bar_format", "{percentage:3.0f}%|{bar}| {elapsed}<{remaining}")?;
+        options.set_item("bar_format", format)?;
         // Without a terminal there is none, but for a notebook.
         let is_notebook = py.import("sys")?.getattr("modules")?.contains("ipykernel")?;
         options.set_item("disable", is_notebook.then_some(false))?;
         Ok(Self(Some(tqdm.call_method("tqdm", (), Some(&options))?.unbind())))
     }
 
-    fn set(&self, py: Python<'_>, done: u32) -> PyResult<()> {
+    fn set(&self, py: Python<'_>, reached: Reached) -> PyResult<()> {
         let Some(bar) = self.0.as_ref().map(|bar| bar.bind(py)) else { return Ok(()) };
-        bar.call_method1("update", (f64::from(done) - bar.getattr("n")?.extract::<f64>()?,)).map(drop)
+        bar.call_method1("update", (reached.steps() - bar.getattr("n")?.extract::<f64>()?,)).map(drop)
     }
 
     fn close(self, py: Python<'_>) -> PyResult<()> {
@@ -83,7 +126,7 @@ impl Bar {
 /// # Panics
 /// `work` panics.
 pub fn interruptible<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Seen) -> T + Send + 'static) -> PyResult<T> {
-    let seen = Arc::new(Seen { interrupt: Interrupt::default(), done: AtomicU32::new(0) });
+    let seen = Arc::new(Seen::default());
     py.detach(|| {
         let (waiting, seen_by_work) = (thread::current(), Arc::clone(&seen));
         let worker = thread::Builder::new().stack_size(8 << 20).spawn(move || {
@@ -97,13 +140,13 @@ pub fn interruptible<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Seen)
                 break Ok(());
             }
             thread::park_timeout(PAUSE);
-            let done = seen.done.load(Ordering::Relaxed);
             let told = Python::attach(|py| {
                 py.check_signals()?;
-                if bar.is_none() && done > 0 && start.elapsed() > SHORT {
-                    bar = Some(Bar::shown(py)?);
+                let Some(reached) = seen.reached().filter(|_| start.elapsed() > SHORT) else { return Ok(()) };
+                if bar.is_none() {
+                    bar = Some(Bar::shown(py, reached)?);
                 }
-                bar.as_ref().map_or(Ok(()), |bar| bar.set(py, done))
+                bar.as_ref().map_or(Ok(()), |bar| bar.set(py, reached))
             });
             if told.is_err() {
                 break told;

@@ -7,7 +7,7 @@ use bg_model::bond_graph;
 use bg_model::failure::Cause;
 use bg_model::integrator::{Dop853, Integrator, Tolerances};
 use bg_model::mechanism::{Mechanism, MechanismVisitor, Scenes};
-use bg_model::run::{Interrupt, Request, RunError, Simulation, State};
+use bg_model::run::{Interrupt, Progress, Request, RunError, Simulation, State};
 use bg_model::simulation::{Ended, Part, Settings, Span, integrate};
 use bg_model::system::Model;
 
@@ -142,6 +142,24 @@ fn a_run_is_interrupted_from_outside() {
     // What begins later ends with its first step.
     let Err(RunError::Stopped(stopped)) = run(Box::new(|| ())) else { panic!("it goes on") };
     assert_eq!(stopped.trajectory.statistics.steps, 1);
+}
+
+#[test]
+fn who_waits_for_a_run_is_told_how_far_it_is() {
+    let progress = Progress::default();
+    let request = |t_end: f64| Request { t_end, progress: progress.clone(), ..Request::default() };
+    let (model, mut steps) = (slide(2.0), 0);
+    let first = Simulation::of(&model, request(1.0)).run().unwrap();
+    assert_eq!(progress.done(), 1.0);
+    // One that goes on from 1 s.
+    let told = |t: f64| {
+        steps += 1;
+        let part = (t - 1.0) / 3.0;
+        assert!((progress.done() - part).abs() < 1e-6, "{part}: {}", progress.done());
+        ControlFlow::Continue(())
+    };
+    Simulation::of(&model, request(4.0)).from(&first.last).each_step(told).run().unwrap();
+    assert!(steps > 3, "{steps}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use bg_model::integrator::Integrator;
 use bg_model::mechanism::Mechanism;
 use bg_model::parameters::Parameters;
-use bg_model::run::Request;
+use bg_model::run::{Progress, Request};
 use bg_model::sensitivity::{
     Direction, Gradients, Measured, Objective, Sensitivities, SensitivityError, gradient, gradient_within,
     sensitivities,
@@ -238,6 +238,17 @@ fn the_gradient_of_a_state_at_rest_is_that_of_the_solution() {
         let error = (found.by[0] - expected).abs();
         assert!(error < most, "{}: {error:e}", method.name());
     }
+}
+
+#[test]
+fn who_waits_is_told_how_far_both_ways_are() {
+    let (model, progress) = (Block::new(BlockParameters::default()).unwrap(), Progress::default());
+    let asked = Request { progress: progress.clone(), ..request(2.0) };
+    sensitivities(&model, &asked, &[Direction::Parameter(0)]).expect("slopes");
+    assert_eq!(progress.done(), 1.0);
+    // The run is not all of a gradient.
+    gradient(&model, &asked, &Objective::last(0), &[Direction::Parameter(0)]).expect("a gradient");
+    assert_eq!(progress.done(), 1.0);
 }
 
 #[test]

@@ -108,7 +108,7 @@ impl Many<'_> {
         let jobs = own.iter_mut().zip(self.values).enumerate().filter_map(|(number, (own, values))| {
             let Own { model, start, method } = own.as_mut()?;
             let model = &**model;
-            let observer = observer(model, self.request, Box::new(|_| ControlFlow::Continue(())), None);
+            let observer = observer(model, (0.0, self.request), Box::new(|_| ControlFlow::Continue(())), None);
             Some(lanes::Job { number, model, values, method, start, observer })
         });
         let mut finished: Vec<_> = self.values.iter().map(|_| None).collect();

@@ -9,6 +9,7 @@ mod ending;
 mod instants;
 mod interrupt;
 mod lanes;
+mod progress;
 mod request;
 mod state;
 mod stopwatch;
@@ -27,6 +28,7 @@ pub use ending::Sample;
 pub use instants::sample_times;
 pub use interrupt::Interrupt;
 pub use lanes::{LaneError, in_lanes};
+pub use progress::Progress;
 pub use request::Request;
 pub use state::{State, StateError};
 pub use trajectory::{Stopped, Trajectory};
@@ -257,7 +259,7 @@ impl Integration<'_> {
         let mut method: AnyMethod = request.method();
         let first = Change { t: t0, method: method.name(), reason: Reason::First };
         let settings = request.settings(t0);
-        let mut observer = observer(model, &request, each_step, another);
+        let mut observer = observer(model, (t0, &request), each_step, another);
         observer.0.largest.copy_from_slice(beginning.largest.as_slice());
         let span = Span { t0, t_end: request.t_end };
         let mut ending = ending.map(|ending| of_state(model, ending));
@@ -281,12 +283,13 @@ type Observers<'a, 'b, 'c> = (Recorder<'a>, (Told<'b>, (Option<&'c mut dyn Obser
 
 fn observer<'a, 'b, 'c>(
     model: &'a dyn Machine,
-    request: &Request,
+    (t0, request): (f64, &Request),
     each_step: EachStep<'b>,
     another: Option<&'c mut dyn Observer>,
 ) -> Observers<'a, 'b, 'c> {
     let peaks = request.peaks.then(|| PeakMonitor::new(model, request.settled));
-    let told = Told { each_step, interrupt: request.interrupt.clone(), is_done: false };
+    let Request { interrupt, progress, .. } = request.clone();
+    let told = Told { each_step, t0, interrupt, progress, is_done: false };
     (Recorder::new(model, &request.parts), (told, (another, peaks)))
 }
 
@@ -375,12 +378,16 @@ fn last(model: &dyn Machine, Finish { t, x, negative, .. }: &Finish, mut largest
 /// Hands each step on.
 struct Told<'a> {
     each_step: EachStep<'a>,
+    /// Where the run begins, s.
+    t0: f64,
     interrupt: Interrupt,
+    progress: Progress,
     is_done: bool,
 }
 
 impl Observer for Told<'_> {
-    fn step(&mut self, t: f64, _t_end: f64, _statistics: &Statistics) {
+    fn step(&mut self, t: f64, t_end: f64, _statistics: &Statistics) {
+        self.progress.tell((t - self.t0) / (t_end - self.t0));
         self.is_done = (self.each_step)(t).is_break() || self.interrupt.is_set();
     }
 

@@ -1,6 +1,6 @@
 //! What is asked of a run.
 
-use super::{Interrupt, sample_times};
+use super::{Interrupt, Progress, sample_times};
 use crate::solve::integrator::{AnyMethod, Auto, Integrator, Tolerances};
 use crate::solve::simulation::{Part, Samples, Settings};
 
@@ -38,6 +38,8 @@ pub struct Request {
     pub step_limit: u64,
     /// What ends it from another thread: it then fails as [`Cause::Interrupted`](crate::failure::Cause::Interrupted).
     pub interrupt: Interrupt,
+    /// What tells another thread how far it is.
+    pub progress: Progress,
 }
 
 impl Default for Request {
@@ -56,6 +58,7 @@ impl Default for Request {
             settled: None,
             step_limit: Settings::default().step_limit,
             interrupt: Interrupt::default(),
+            progress: Progress::default(),
         }
     }
 }

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use bg_model::description::{InputInfo, ParameterInfo};
-use bg_model::run::{Interrupt, Request, Trajectory};
+use bg_model::run::{Interrupt, Progress, Request, Trajectory};
 use bg_model::sensitivity::Objective;
 use bg_model::simulation::Recording;
 use thiserror::Error;
@@ -56,12 +56,19 @@ pub struct Asked {
     pub start: Begin,
     /// What ends all runs that are made for it.
     pub interrupt: Interrupt,
+    /// What tells how far it is of what is one run: derivatives, a linear model.
+    pub progress: Progress,
 }
 
 impl Asked {
     /// What is asked of a run from `t0` (s) on.
     fn request(&self, t0: f64) -> Result<Request, RequestError> {
         Ok(Request { interrupt: self.interrupt.clone(), ..self.integration.request(t0, None)? })
+    }
+
+    /// What is asked of a run from the start whose derivatives are wanted.
+    fn followed(&self) -> Result<Request, RequestError> {
+        Ok(Request { progress: self.progress.clone(), ..self.request(0.0)? })
     }
 
     /// What is asked of a run whose end, at `t` (s), is all that counts.
@@ -147,7 +154,9 @@ pub fn linearize(program: &Program, asked: &Asked, at: Option<f64>) -> Result<St
     let Given { scene, chosen, .. } = given(program, asked)?;
     check_time("at", at).map_err(refused)?;
     let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
-    let (space, _) = linearised(&*machine, at, &|t| asked.to(t)).map_err(refused)?;
+    let to =
+        |t: f64| -> Result<Request, RequestError> { Ok(Request { progress: asked.progress.clone(), ..asked.to(t)? }) };
+    let (space, _) = linearised(&*machine, at, &to).map_err(refused)?;
     Ok(space)
 }
 
@@ -162,7 +171,7 @@ pub fn sensitivity(
     by: &[String],
     of: &[String],
 ) -> Result<(Ran, Vec<Course>), Refused> {
-    let request = asked.request(0.0).map_err(refused)?;
+    let request = asked.followed().map_err(refused)?;
     let Given { scene, chosen, inputs } = given(program, asked)?;
     let (run, courses) = derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)?;
     Ok((Ran { run, failure: None, inputs }, courses))
@@ -194,7 +203,7 @@ pub struct Gradient {
 /// # Errors
 /// It cannot be made, or has no derivatives.
 pub fn gradient(program: &Program, asked: &Asked, of: &Number, by: &[String]) -> Result<Gradient, Refused> {
-    let request = asked.request(0.0).map_err(refused)?;
+    let request = asked.followed().map_err(refused)?;
     let Given { scene, chosen, .. } = given(program, asked)?;
     let (output, _) = only(scene, &of.output).map_err(refused)?;
     check_time("at", of.at).map_err(refused)?;
@@ -233,11 +242,12 @@ pub struct Fit {
     pub columns: Vec<String>,
 }
 
-/// The parameters with which outputs are nearest to what was measured, as `identify --json` gives them.
+/// The parameters with which outputs are nearest to what was measured, as `identify --json` gives them; `told` is told of
+/// each run.
 ///
 /// # Errors
 /// It cannot be sought, or no fit came about.
-pub fn identify(program: &Program, asked: &Asked, fit: &Fit) -> Result<serde_json::Value, Refused> {
+pub fn identify(program: &Program, asked: &Asked, fit: &Fit, told: &dyn Fn()) -> Result<serde_json::Value, Refused> {
     let Given { scene, chosen, .. } = given(program, asked)?;
     let variables = identify::variables(scene, &chosen, &fit.parameters, &fit.bounds).map_err(refused)?;
     let named = identify::columns(scene, &fit.columns).map_err(refused)?;
@@ -251,7 +261,7 @@ pub fn identify(program: &Program, asked: &Asked, fit: &Fit) -> Result<serde_jso
     let t_end = data.times.last().copied().unwrap_or_default();
     let request = asked.to(t_end).map_err(refused)?;
     let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
-    let found = machine.identified(&request, &data, &variables, &mut |_, _| ());
+    let found = machine.identified(&request, &data, &variables, &mut |_, _| told());
     let found = machine.known("derivatives by parameters", found).map_err(refused)?.map_err(refused)?;
     Ok(report::json(&found, &data, outputs))
 }

@@ -18,7 +18,7 @@ use crate::model::description::Description;
 use crate::model::dynamics::Machine;
 use crate::model::mechanism::Reversible;
 use crate::solve::integrator::Scale;
-use crate::solve::run::{Interrupt, Request, Trajectory, observed};
+use crate::solve::run::{Interrupt, Progress, Request, Trajectory, observed};
 use crate::solve::simulation;
 use back::{Back, Crossing, add, dot};
 use event::back_over;
@@ -28,6 +28,9 @@ use record::{Happened, Record, Sample, Step};
 
 /// The states of a run that are kept unless another number is asked for.
 const MOST_STATES: usize = 1 << 16;
+
+/// About the part of the time that the run takes; the rest is that of following it backwards.
+const RUN: f64 = 0.25;
 
 /// A number that a run gives, with its derivatives.
 #[derive(Clone, Debug)]
@@ -112,7 +115,9 @@ pub fn gradient_within(
     let Some(sweeps) = model.swept() else { return Err(SensitivityError::NoReverseSweep { model: name }) };
     let mut times: Vec<f64> = instants.iter().map(|&(t, ..)| t).collect();
     times.dedup();
-    let request = Request { samples: simulation::Samples::At(times), ..request.clone() };
+    let progress = &request.progress;
+    let [forwards, back_again] = [progress.part(0.0, RUN), progress.part(RUN, 1.0)];
+    let request = Request { samples: simulation::Samples::At(times), progress: forwards, ..request.clone() };
     let (machine, values) = (model.machine(), model.values());
     let mut at_samples = AtSamples { objective, instants: &instants, given: 0, value: 0.0 };
     let add = |t: f64, x: &[f64], negative: &[bool]| at_samples.add(t, &outputs(&*machine, t, x, negative));
@@ -127,7 +132,8 @@ pub fn gradient_within(
     let scale = record.scale.clone().unwrap_or_else(|| Scale::new(&request.tolerances(), machine.states()));
     let back = Back::new((&*machine, &*sweeps, lifted), (scale, super::is_own(&request)), &objective.integrals);
     let weights = vec![0.0; machine.states()];
-    let mut backwards = Backwards { back, record: &record, model: &*machine, weights, interrupt: &request.interrupt };
+    let told = (&request.interrupt, back_again);
+    let mut backwards = Backwards { back, record: &record, model: &*machine, weights, told };
     backwards.back_to_start()?;
     backwards.by_parameters(directions)?;
     let (integral, by) = (backwards.back.integral, backwards.back.lifted.by);
@@ -176,7 +182,8 @@ struct Backwards<'a> {
     back: Back<'a>,
     /// How the objective depends on the state where this has come to.
     weights: Vec<f64>,
-    interrupt: &'a Interrupt,
+    /// What ends it, and what it tells how far it is.
+    told: (&'a Interrupt, Progress),
 }
 
 impl Backwards<'_> {
@@ -188,7 +195,9 @@ impl Backwards<'_> {
             let first = kept * stride;
             let starts = self.again(first..steps.len().min(first + stride), state)?;
             for (number, x) in starts.iter().enumerate().rev().map(|(k, x)| (first + k, x)) {
-                if self.interrupt.is_set() {
+                let (interrupt, progress) = &self.told;
+                progress.tell(1.0 - number as f64 / steps.len() as f64);
+                if interrupt.is_set() {
                     return Err(SensitivityError::Interrupted { t: self.record.steps[number].to });
                 }
                 let mut inside = vec![0.0; x.len()];
