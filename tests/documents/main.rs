@@ -1,5 +1,6 @@
 //! What documents say of files: links lead somewhere, files that are named are there, tables list the modules of their
-//! folders, decisions are short. That each mutant has its place in the code, and that all workspaces have the same versions.
+//! folders, decisions are short. That lines of code are, too, that each mutant has its place in the code, and that all
+//! workspaces have the same versions.
 
 mod markdown;
 
@@ -263,6 +264,22 @@ fn workspaces_have_the_same_versions() {
             .find(|(other, of, _)| other == name && compatible(of) == compatible(version) && of != version);
         assert_eq!(other, None, "{name} {version} in {}", path.display());
     }
+}
+
+/// Nobody scrolls sideways: but for rows of tables, which cannot be broken, and for what `bg-import` has written.
+#[test]
+fn lines_of_code_are_short() {
+    const COLUMNS: usize = 120;
+    let written = root().join("bg-model/import/tests/cases");
+    let is_code = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "rs") && !path.starts_with(&written);
+    let is_row = |line: &str| ["/// |", "//! |"].iter().any(|row| line.trim_start().starts_with(row));
+    let is_long = |line: &str| line.chars().count() > COLUMNS && !is_row(line);
+    let long = files(&root()).into_iter().filter(is_code).flat_map(|path| {
+        let text = read(&path);
+        let numbers: Vec<usize> = text.lines().zip(1..).filter(|(line, _)| is_long(line)).map(|of| of.1).collect();
+        numbers.into_iter().map(move |number| format!("{}:{number}", path.display()))
+    });
+    assert_eq!(long.collect::<Vec<_>>(), Vec::<String>::new(), "longer than {COLUMNS} columns");
 }
 
 /// What a mutant replaces occurs once, so that the script that breaks the code breaks what it says.

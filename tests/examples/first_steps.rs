@@ -121,7 +121,9 @@ fn models() -> Vec<Example> {
     let constant = Input::constant(1.0);
     let mut models = Vec::new();
     macro_rules! add_examples {
-        ($($name:ident: $module:ident $model:ident ($($rest:tt)*);)*) => {$( models.push(examples::$name(&constant)); )*};
+        ($($name:ident: $module:ident $model:ident ($($rest:tt)*);)*) => {
+            $( models.push(examples::$name(&constant)); )*
+        };
     }
     macro_rules! add_scenes {
         ($($name:ident: $model:ident ($($rest:tt)*);)*) => {$( models.push(scenes::$name()); )*};

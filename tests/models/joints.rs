@@ -32,13 +32,21 @@ macro_rules! plate_on {
 }
 
 plate_on!(PlateOnRevolute: revolute z { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; });
-plate_on!(PlateOnRevoluteInertial: revolute z { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; frame inertial; });
-plate_on!(PlateOnRevolutePerAxis: revolute y { stiffness [1e3, 1e3, 1e3]; damping [40, 40, 40]; tilt stiffness 50; tilt damping 2; });
+plate_on!(PlateOnRevoluteInertial: revolute z {
+    stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; frame inertial;
+});
+plate_on!(PlateOnRevolutePerAxis: revolute y {
+    stiffness [1e3, 1e3, 1e3]; damping [40, 40, 40]; tilt stiffness 50; tilt damping 2;
+});
 plate_on!(PlateOnPrismatic: prismatic x { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; });
-plate_on!(PlateOnPrismaticInertial: prismatic y { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; frame inertial; });
+plate_on!(PlateOnPrismaticInertial: prismatic y {
+    stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; frame inertial;
+});
 plate_on!(PlateOnSpherical: spherical { stiffness 1e3; damping 40; });
 plate_on!(PlateOnCylindrical: cylindrical x { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; });
 plate_on!(PlateOnUniversal: universal x y { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; });
 plate_on!(PlateOnUniversalZx: universal z x { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; });
 plate_on!(PlateOnFixed: fixed { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; });
-plate_on!(PlateOnFixedInertial: fixed { stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; frame inertial; });
+plate_on!(PlateOnFixedInertial: fixed {
+    stiffness 1e3; damping 40; tilt stiffness 50; tilt damping 2; frame inertial;
+});

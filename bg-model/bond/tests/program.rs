@@ -348,7 +348,8 @@ fn a_robot_and_a_rust_file_are_run() {
         "arm.urdf",
         r#"<robot name="arm"><link name="base"/><link name="upper"><inertial><origin xyz="0.3 0 0"/><mass value="2"/>
         <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial></link>
-        <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint></robot>"#,
+        <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+        </robot>"#,
     );
     told(folder.path(), "run arm.urdf --t-end 0.2");
     assert!(refused(folder.path(), "report arm.urdf --live", 2).contains("the page that `bond serve` opens"));

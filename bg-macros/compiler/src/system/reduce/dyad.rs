@@ -6,9 +6,9 @@
 //! Its slope by the link's angle is the pivot with which the row's flow gives the link's momentum, w = b c - a s, and
 //! it is a root: w^2 = a^2 + b^2 - e^2. From w and e follow c and s. On which side of zero w is the start pose says:
 //! that changes nowhere but at zero. A pin has two rows, A u + B v + e with the cosine and the sine of one link in u,
-//! of another in v. The length of B v does not change, so
-//! |A u + e|^2 - |B|^2 is a gap as above, and v follows from u. Along B v the rows give the momentum of the first link, along A u that of the
-//! other one, both with the pivot (A u) x (B v).
+//! of another in v. The length of B v does not change, so |A u + e|^2 - |B|^2 is a gap as above, and v follows from u.
+//! Along B v the rows give the momentum of the first link, along A u that of the other one, both with the pivot
+//! (A u) x (B v).
 //! Until all equations are made, c and s stay for what they are: sums with them become short. What they are is put in
 //! last. A pivot that may vanish is none: links go where bounds prove that it does not, or where the scene says that
 //! they go. Source: closed forms of dyads, J. J. Uicker, G. R. Pennock, J. E. Shigley, Theory of Machines and
