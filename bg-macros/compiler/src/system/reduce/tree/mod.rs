@@ -319,8 +319,8 @@ fn become_states(
     Some(places)
 }
 
-/// The accelerations as sums over the reactions that are left, so that the matrix of these has parts of the rates; those
-/// of links with a coordinate, whose accelerations nothing reads, as they are.
+/// The accelerations, and what holds locked links, as sums over the reactions that are left, so that the matrix of these
+/// has parts of the rates; those of links with a coordinate, whose accelerations nothing reads, as they are.
 fn linear(pool: &mut Pool, links: &[Link], of: Accelerations, multipliers: &[Symbol]) -> Accelerations {
     let zero = pool.zero();
     let mut written = |ids: &[Id]| -> Vec<Id> {
@@ -336,12 +336,13 @@ fn linear(pool: &mut Pool, links: &[Link], of: Accelerations, multipliers: &[Sym
         sums.iter().map(|sum| pool.sum(sum)).collect()
     };
     let rates = written(&of.rates);
+    let needed = of.needed.into_iter().map(|needed| needed.map(|needed| written(&[needed])[0])).collect();
     let accelerated = links
         .iter()
         .zip(of.links)
         .map(|(link, own)| if link.freedom.has_coordinate() { own } else { own.map(|part| Value(written(&part.0))) });
     let links = accelerated.collect();
-    Accelerations { rates, links, needed: of.needed }
+    Accelerations { rates, links, needed }
 }
 
 /// The states that count the turns of a joint's angle and are its coordinate, which starts as they do and has their

@@ -471,14 +471,14 @@ fn joints_that_rest_on_stops_are_locked() {
         friction d on j2 { coulomb 2; }";
     const TIED: &str = "stop a on j0 { at most 0.2; restitution 0.5; } stop b on j1 { at least -0.2; restitution 0; }
         TF ratio = 0.5; 0 tie: translation; rSe follows = 0; j1.slide -> ratio -> tie -> j2.slide; follows -> tie;";
-    // Which branches are two holds on one joint, of which the literal graph makes nothing that can be compared.
-    let cases: [(&[&str], &str, fn(&[bool]) -> bool); 3] = [
-        (&["revolute y", "revolute z", "revolute x"], BOTH, |clear| !clear[0] && !clear[1]),
-        (&["revolute y", "revolute z", "revolute x"], ROUGH, |clear| !clear[0] && !clear[1] && !clear[2]),
-        (&["revolute y", "prismatic x", "prismatic z"], TIED, |_| false),
+    // With switches that are not all positive: two holds on one joint are nothing that the literal graph can be compared in.
+    let cases: [(&[&str], &str, &[usize]); 3] = [
+        (&["revolute y", "revolute z", "revolute x"], BOTH, &[0, 1]),
+        (&["revolute y", "revolute z", "revolute x"], ROUGH, &[0, 1, 2]),
+        (&["revolute y", "prismatic x", "prismatic z"], TIED, &[]),
     ];
     let mut counts = Vec::new();
-    for (kinds, others, is_twice) in cases {
+    for (kinds, others, of_one_joint) in cases {
         let kinds: Vec<String> = kinds.iter().map(|&kind| kind.to_owned()).collect();
         let scene = put(&format!("{} {others} {}", joined(&kinds, ""), observed(3, "")));
         let (reduced, literal) = (&scene.reduced, &scene.literal);
@@ -487,7 +487,7 @@ fn joints_that_rest_on_stops_are_locked() {
         let switches = reduced.switches.len();
         for branch in 0..1_u32 << switches {
             let negative: Vec<bool> = (0..switches).map(|switch| branch >> switch & 1 == 1).collect();
-            if is_twice(&negative) {
+            if !of_one_joint.is_empty() && of_one_joint.iter().all(|&switch| !negative[switch]) {
                 continue;
             }
             let states: Vec<f64> = reduced.states.iter().map(|_| draw.number()).collect();
