@@ -246,7 +246,7 @@ fn codes(programs: Programs, rows: &Rows, states: usize, damped: Vec<(usize, usi
     let rates = Routine { results: rate.results[..states].to_vec(), ..rate.clone() };
     Codes {
         constants: code(constants),
-        rate: code(&rates),
+        rate: code(&rates).in_pairs(),
         guards: code(guards),
         loops: code(loops),
         reactions: code(reactions),
@@ -299,7 +299,7 @@ fn second(of: Deferred<SecondOrderPrograms>, rows: Rows, rate: usize) -> Deferre
     deferred(move || Second {
         constants: rows.code(&of.constants),
         derivatives: rows.code(&of.second_derivatives),
-        forces: of.forces.as_ref().map(|forces| rows.code(forces)),
+        forces: of.forces.as_ref().map(|forces| rows.code(forces).in_pairs()),
         operations: of.operations(rate).map(small),
     })
 }

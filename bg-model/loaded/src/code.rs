@@ -15,7 +15,7 @@ use bg_compiler::program::Routine;
 use bg_compiler::program::batches::{self, Read, batches};
 use bg_model::scalar::Scalar;
 use bg_model::tabled::{Word, run};
-use bg_native::{Function, Inputs, Operand, Program};
+use bg_native::{Function, Inputs, Operand, Pairing, Program};
 
 /// A place in the row of values.
 type Place = u32;
@@ -66,8 +66,17 @@ pub struct Row<S: Scalar> {
     values: Vec<S>,
     /// None where it is interpreted.
     call: Option<Call<S>>,
+    /// What machine code reads that stays as it is; none as long as there is no machine code.
+    fixed: Option<Vec<S>>,
     /// How often it is interpreted before it is translated.
     waits: u32,
+}
+
+impl<S: Scalar> Row<S> {
+    /// What machine code reads that stays as it is.
+    fn appended(&self) -> &[S] {
+        self.fixed.as_deref().unwrap_or_default()
+    }
 }
 
 /// How machine code is called with numbers of this kind.
@@ -115,7 +124,14 @@ impl Code {
         let operations = routine.assignments.iter().map(|of| of.operation.map(|operand| places.of(operand))).collect();
         let results = routine.results.iter().map(|&result| places.of(result)).collect();
         let reads = places.symbols.len();
-        places.code(Program { operations, results }, reads)
+        places.code(Program { operations, results, pairing: Pairing::None }, reads)
+    }
+
+    /// The same program, whose machine code has pairs of operations: for what is evaluated at each step of a run.
+    #[must_use]
+    pub fn in_pairs(mut self) -> Self {
+        self.program.pairing = Pairing::Sought;
+        self
     }
 
     /// How many results it has.
@@ -140,7 +156,7 @@ impl Code {
         let mut values: Vec<S> = fixed.collect();
         values.resize(self.inputs(), S::from_f64(0.0));
         let (call, waits) = back_end.call();
-        Row { values, call, waits }
+        Row { values, call, fixed: None, waits }
     }
 
     /// How many places there are before those of operations.
@@ -160,8 +176,8 @@ impl Code {
         let begin = self.fixed.len() + self.states;
         row.values[begin..].iter_mut().zip(&self.symbols).for_each(|(to, &read)| *to = symbol(read));
         if let Some((function, call)) = self.function(row) {
-            let (fixed, read) = (&row.values[..self.fixed.len()], &row.values[begin..begin + self.reads]);
-            call(function, Inputs { fixed, states: x, read, negative }, to);
+            let read = &row.values[begin..begin + self.reads];
+            call(function, Inputs { fixed: row.appended(), states: x, read, negative }, to);
         } else {
             self.interpret(row, x, negative, to);
         }
@@ -171,8 +187,12 @@ impl Code {
     /// The short way, without a place for what is read: rates of a few hundred operations take a tenth less time by it.
     #[inline]
     pub fn evaluate_at<S: Scalar>(&self, row: &Row<S>, x: &[S], negative: &[S::Switch], to: &mut [S]) -> bool {
-        let (Some(call), Some(Some(function)), 0) = (row.call, self.function.get(), self.reads) else { return false };
-        call(function, Inputs { fixed: &row.values, states: x, read: &[], negative }, to);
+        let (Some(call), Some(fixed), Some(Some(function)), 0) =
+            (row.call, &row.fixed, self.function.get(), self.reads)
+        else {
+            return false;
+        };
+        call(function, Inputs { fixed, states: x, read: &[], negative }, to);
         true
     }
 
@@ -186,7 +206,7 @@ impl Code {
         to: &mut [S],
     ) {
         if let Some((function, call)) = self.function(row) {
-            call(function, Inputs { fixed: &row.values[..self.fixed.len()], states: x, read, negative }, to);
+            call(function, Inputs { fixed: row.appended(), states: x, read, negative }, to);
         } else {
             let begin = self.fixed.len() + self.states;
             row.values[begin..begin + self.reads].copy_from_slice(&read[..self.reads]);
@@ -203,7 +223,7 @@ impl Code {
         to.iter_mut().zip(results).for_each(|(to, &place)| *to = values[place as usize]);
     }
 
-    /// The machine code, where it is there or pays.
+    /// The machine code, where it is there or pays; the row has what it reads then.
     fn function<S: Scalar>(&self, row: &mut Row<S>) -> Option<(&Function, Call<S>)> {
         let call = row.call?;
         let function = match self.function.get() {
@@ -214,7 +234,16 @@ impl Code {
             }
             None => self.translated(),
         };
-        function.as_ref().map(|function| (function, call))
+        let function = function.as_ref()?;
+        row.fixed.get_or_insert_with(|| {
+            let fixed = &row.values[..self.fixed.len()];
+            let signed = |&(place, is_negative): &(u32, bool)| {
+                let value = fixed[place as usize];
+                if is_negative { -value } else { value }
+            };
+            fixed.iter().copied().chain(function.appended().iter().map(signed)).collect()
+        });
+        Some((function, call))
     }
 
     fn translated(&self) -> &Option<Function> {
@@ -316,4 +345,24 @@ fn entered<T>(list: &mut Vec<T>, entry: T) -> Place {
 
 fn place(index: usize) -> Place {
     Place::try_from(index).expect("fewer than 2^32 values")
+}
+
+#[cfg(all(test, feature = "machine-code", any(target_arch = "x86_64", target_arch = "aarch64")))]
+mod tests {
+    use std::path::Path;
+
+    use crate::text::{Counted, Wanted, load_wanted};
+
+    #[test]
+    fn rates_of_the_hacksaw_have_pairs_of_operations() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../hacksaw/hacksaw.bond");
+        let text = std::fs::read_to_string(file).expect("the hacksaw's text");
+        let wanted = Wanted { scene: &|name| name == "Motion", counted: Counted::Made, most: None };
+        let graphs = load_wanted(&text, wanted).unwrap_or_else(|faults| panic!("{}", faults[0]));
+        let motion = graphs[0].models.iter().find(|model| model.description.name == "Motion").expect("the scene");
+        let rate = &motion.blueprint.as_ref().expect("it was asked for").programs.rate;
+        let function = rate.translated().as_ref().expect("a back end");
+        assert_eq!(rate.program.operations.len(), 225);
+        assert!(function.operations() <= 211 && !function.appended().is_empty(), "{}", function.operations());
+    }
 }

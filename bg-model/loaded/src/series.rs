@@ -362,7 +362,7 @@ impl<'a> Writer<'a> {
             }
         }
         let reads = written.places.symbols.len();
-        written.places.code(Program { operations: written.operations, results }, reads)
+        written.places.code(Program { operations: written.operations, results, ..Program::default() }, reads)
     }
 
     /// A stage; `places` are those of the row that are taken, `table` those of the work table.
@@ -448,7 +448,7 @@ impl<'a> Writer<'a> {
             Given::Coefficient(operand) | Given::Number(operand) => self.operand(&mut written, operand),
         });
         let results = results.collect();
-        written.places.code(Program { operations: written.operations, results }, reads)
+        written.places.code(Program { operations: written.operations, results, ..Program::default() }, reads)
     }
 
     /// The value of an operation, or its coefficient.

@@ -6,7 +6,7 @@
 use std::cell::OnceCell;
 use std::ops::Range;
 
-use super::pairs::{Paired, pair};
+use super::pairs::{Paired, Search, pair};
 use super::reversed::{Reversed, reversed};
 use super::tape::{Tape, tape};
 use super::{Counts, Deferred, Program, Request, Routine, deferred, schedule};
@@ -331,8 +331,8 @@ impl Programs {
     /// and who interprets programs has no use for them.
     pub fn pairs(&self) -> &Pairs {
         self.pairs.get_or_init(|| Pairs {
-            rate: pair(&self.running.rate),
-            forces: self.second_order.as_ref().and_then(|second| pair(second.forces.as_ref()?)),
+            rate: pair(&self.running.rate, Search::Thorough),
+            forces: self.second_order.as_ref().and_then(|second| pair(second.forces.as_ref()?, Search::Thorough)),
         })
     }
 

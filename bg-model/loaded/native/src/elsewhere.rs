@@ -14,6 +14,18 @@ impl Function {
     }
 
     /// Never called.
+    #[must_use]
+    pub fn appended(&self) -> &[(u32, bool)] {
+        match *self {}
+    }
+
+    /// Never called.
+    #[must_use]
+    pub fn operations(&self) -> usize {
+        match *self {}
+    }
+
+    /// Never called.
     pub fn call(&self, _inputs: Inputs<'_>, _results: &mut [f64]) {
         match *self {}
     }

@@ -7,7 +7,8 @@
 //!
 //! | module | question it answers |
 //! |---|---|
-//! | `program` | what is translated; in which order, what of it is needed |
+//! | `program` | what is translated |
+//! | `steps` | which steps it takes, on numbers and on pairs of them; in which order, what of it is needed |
 //! | `back_end` | where machine code is, how it is called: the one place with `unsafe` |
 //! | `back_end::functions` | which functions machine code calls |
 //! | `back_end::translate` | a program to instructions |
@@ -20,9 +21,11 @@ mod back_end;
 mod back_end;
 #[cfg_attr(
     not(all(feature = "cranelift", any(target_arch = "x86_64", target_arch = "aarch64"))),
-    allow(dead_code, reason = "what is not translated needs no order")
+    allow(dead_code, reason = "what is not translated needs no lengths")
 )]
 mod program;
+#[cfg(all(feature = "cranelift", any(target_arch = "x86_64", target_arch = "aarch64")))]
+mod steps;
 
 pub use back_end::Function;
-pub use program::{Inputs, Operand, Program};
+pub use program::{Inputs, Operand, Pairing, Program};

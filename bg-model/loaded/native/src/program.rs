@@ -9,6 +9,19 @@ pub struct Program {
     pub operations: Vec<Operation<Operand>>,
     /// The results.
     pub results: Vec<Operand>,
+    /// Whether operations are joined to pairs.
+    pub pairing: Pairing,
+}
+
+/// Whether operations of one kind become one on pairs of numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pairing {
+    /// No.
+    #[default]
+    None,
+    /// Where that saves operations: for what is evaluated again and again, as the search takes as long as the rest of
+    /// the translation.
+    Sought,
 }
 
 /// A value that an operation takes: an entry of one of the [`Inputs`], or the value of an earlier operation.
@@ -22,6 +35,13 @@ pub enum Operand {
     Read(u32),
     /// The value of an operation, by its place among them.
     Value(u32),
+}
+
+impl Operand {
+    /// Which operation's value it is, if it is one's.
+    pub(crate) fn value(self) -> Option<usize> {
+        if let Self::Value(of) = self { Some(of as usize) } else { None }
+    }
 }
 
 /// What a program reads: numbers of any kind, and of each switch whether its guard is negative.
@@ -68,69 +88,5 @@ impl Program {
             _ => None,
         });
         Lengths { switches: switches.max().unwrap_or(0), ..lengths }
-    }
-
-    /// The operations that are needed, in an order in which machine code is short: first the arguments of functions and
-    /// their calls, over which it can keep nothing in registers; then each result with what it needs.
-    pub(crate) fn order(&self) -> Vec<usize> {
-        let mut order = Order { program: self, is_done: vec![false; self.operations.len()], done: Vec::new() };
-        let needed = order.needed();
-        let is_call = |operation: &Operation<Operand>| matches!(operation, Operation::Call(..));
-        let calls = (0..self.operations.len()).filter(|&of| needed[of] && is_call(&self.operations[of]));
-        calls.for_each(|of| order.enter(of));
-        self.results.iter().for_each(|&result| order.enter_operand(result));
-        order.done
-    }
-}
-
-/// Operations in order.
-struct Order<'a> {
-    program: &'a Program,
-    is_done: Vec<bool>,
-    done: Vec<usize>,
-}
-
-impl Order<'_> {
-    /// Which operations results need.
-    fn needed(&self) -> Vec<bool> {
-        let mut needed = vec![false; self.program.operations.len()];
-        let need = |needed: &mut Vec<bool>, operand: Operand| {
-            if let Operand::Value(value) = operand {
-                needed[value as usize] = true;
-            }
-        };
-        self.program.results.iter().for_each(|&result| need(&mut needed, result));
-        for (of, operation) in self.program.operations.iter().enumerate().rev() {
-            if needed[of] {
-                operation.operands().into_iter().for_each(|operand| need(&mut needed, operand));
-            }
-        }
-        needed
-    }
-
-    fn enter_operand(&mut self, operand: Operand) {
-        if let Operand::Value(value) = operand {
-            self.enter(value as usize);
-        }
-    }
-
-    /// Enters an operation after what it needs. On a stack of its own: programs are deep.
-    fn enter(&mut self, of: usize) {
-        let mut open = vec![of];
-        while let Some(&top) = open.last() {
-            let waits = self.program.operations[top].operands().into_iter().find_map(|operand| match operand {
-                Operand::Value(value) if !self.is_done[value as usize] => Some(value as usize),
-                _ => None,
-            });
-            match waits {
-                Some(first) if !self.is_done[top] => open.push(first),
-                _ => {
-                    open.pop();
-                    if !std::mem::replace(&mut self.is_done[top], true) {
-                        self.done.push(top);
-                    }
-                }
-            }
-        }
     }
 }

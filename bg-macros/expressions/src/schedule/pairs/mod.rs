@@ -1,12 +1,14 @@
 //! Pairs of operations: straight-line code for vectors of two numbers.
 //!
-//! In: a [`Routine`]. Out: a [`Paired`] with the same results, each rounded as before; only the sign of a zero may
-//! differ. Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind whose operands belong
-//! together become one operation on pairs, which costs what one on numbers does. `nodes` frees the routine from signs,
-//! `choose` says which operations go together, `anneal` improves on it, `signs` with which sign each value is held,
-//! `lower` writes the steps. Method: superword level parallelism (S. Larsen, S. Amarasinghe, PLDI 2000), grown from
-//! neighbours among the states and the results.
+//! In: a [`Routine`]. Out: a [`Paired`] with the same results, each rounded as before; after a [`Search::Thorough`] the
+//! sign of a zero may differ. Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind whose
+//! operands belong together become one operation on pairs, which costs what one on numbers does. `nodes` frees the
+//! routine from signs, `choose` says which operations go together and `anneal` improves on it, or `trees` says so in a
+//! hundredth of the time; `account` keeps what a choice costs, `signs` says with which sign each value is held, `lower`
+//! writes the steps. Method: superword level parallelism (S. Larsen, S. Amarasinghe, PLDI 2000), grown from neighbours
+//! among the states and the results.
 
+mod account;
 mod anneal;
 mod choose;
 mod lower;
@@ -15,6 +17,7 @@ mod parity;
 mod signs;
 #[cfg(test)]
 mod tests;
+mod trees;
 
 use crate::schedule::{Assignment, Operand, Routine};
 
@@ -79,28 +82,57 @@ pub enum Half {
     In(u32, usize),
 }
 
-/// The part of the steps that has to remain at most for pairs to pay.
-const PART: f64 = 0.9;
+impl Search {
+    /// The part of the steps that may remain at most for pairs to pay. Machine code has fewer loads and stores as well.
+    const fn part(self) -> f64 {
+        match self {
+            Self::Thorough => 0.9,
+            Self::Short => 1.0,
+        }
+    }
+}
 
 /// Shorter routines stay as they are: they take few nanoseconds, and are easier to read.
 const LEAST: usize = 40;
 
+/// How pairs are sought.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Search {
+    /// For code that is compiled once: some 0.4 ms for an operation, or 40 ms for a hundred of them. Zeros may have
+    /// other signs.
+    Thorough,
+    /// For code that somebody waits for: 0.5 ms for a hundred operations. All bits are kept.
+    Short,
+}
+
+/// What becomes of a result that is zero.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Zeros {
+    /// It may have the other sign: a sum is held negated where that saves a negation.
+    OfAnySign,
+    /// It has the sign that the routine gives it.
+    OfTheirSign,
+}
+
 /// The routine with pairs; none where they would save little, nor of a long routine.
 #[must_use]
-pub fn pair(routine: &Routine) -> Option<Paired> {
+pub fn pair(routine: &Routine, search: Search) -> Option<Paired> {
     if routine.counts.total() < LEAST || routine.is_long() {
         return None;
     }
-    let paired = paired(routine);
-    let pays = (paired.operations() as f64) < PART * routine.counts.total() as f64;
+    let paired = paired(routine, search);
+    let pays = (paired.operations() as f64) < search.part() * routine.counts.total() as f64;
     pays.then_some(paired)
 }
 
 /// The routine with pairs, whether they pay or not.
-fn paired(routine: &Routine) -> Paired {
+fn paired(routine: &Routine, search: Search) -> Paired {
     let nodes = nodes::Nodes::new(routine);
-    let choice = anneal::anneal(&nodes, choose::choose(&nodes));
-    let negative = signs::signs(&nodes, &choice);
+    let (choice, zeros) = match search {
+        Search::Thorough => (anneal::anneal(&nodes, choose::choose(&nodes)), Zeros::OfAnySign),
+        Search::Short => (trees::trees(&nodes), Zeros::OfTheirSign),
+    };
+    let negative = signs::signs(&nodes, &choice, zeros);
     lower::lower(routine, &nodes, &choice, &negative)
 }
 

@@ -4,6 +4,7 @@
 //! Method: that both halves of a pair add or subtract alike, that a product has the sign of its factors, that a result
 //! is held as it is: each is a linear equation over two elements. A negation remains where they contradict each other.
 
+use super::Zeros;
 use super::choose::Choice;
 use super::nodes::{Kind, Nodes, Signed};
 use super::parity::Parity;
@@ -14,12 +15,16 @@ fn term(node: usize, operand: Signed) -> (Vec<usize>, bool) {
     (std::iter::once(node).chain(operand.node()).collect(), operand.negative)
 }
 
-/// Whether the negative of each operation's value is held.
-pub(super) fn signs(nodes: &Nodes, choice: &Choice) -> Vec<bool> {
+/// Whether the negative of each operation's value is held. A sum that is zero has another sign than the negated sum of
+/// the negatives has: no sum's negative is held where zeros keep their signs.
+pub(super) fn signs(nodes: &Nodes, choice: &Choice, zeros: Zeros) -> Vec<bool> {
     let mut parity = Parity::new(nodes.all.len());
     let of_kind = |kinds: &'static [Kind]| nodes.all.iter().enumerate().filter(|(_, node)| kinds.contains(&node.kind));
     // First, so that nothing contradicts it.
     of_kind(&[Kind::Other]).for_each(|(index, _)| parity.ask(&[index], false));
+    if zeros == Zeros::OfTheirSign {
+        of_kind(&[Kind::Sum]).for_each(|(index, _)| parity.ask(&[index], false));
+    }
     for pair in choice.pairs(nodes).filter(|pair| nodes.all[pair.nodes[0]].kind == Kind::Sum) {
         for [left, right] in pair.operands {
             if !left.is_constant() && !right.is_constant() {

@@ -1,6 +1,6 @@
 //! Paired code gives the routine's results, in fewer operations where things repeat themselves.
 
-use super::{Half, Paired, Step, Value, pair, paired};
+use super::{Half, Paired, Search, Step, Value, pair, paired};
 use crate::expr::random::Source;
 use crate::expr::{Environment, Function, Id, Pool, Symbol};
 use crate::schedule::tests::{apply_operation, run, value};
@@ -63,18 +63,24 @@ fn program(pool: &mut Pool, roots: &[Id]) -> Program<1> {
 }
 
 /// Every value that is read has been written, and the bits of the results are the routine's, but for the sign of a
-/// zero.
-fn agrees(pool: &mut Pool, roots: &[Id], environment: &Environment) -> Paired {
+/// zero where the search may change it. Gives what each search finds.
+fn agrees(pool: &mut Pool, roots: &[Id], environments: &[Environment]) -> [Paired; 2] {
     let program = program(pool, roots);
-    let constants = run(&program.constants, &[], environment);
     let routine = &program.routines[0];
-    let paired = paired(routine);
-    let (expected, found) = (run(routine, &constants, environment), results(&paired, &constants, environment));
-    assert_eq!(expected.len(), found.len());
-    for (expected, found) in expected.iter().zip(&found) {
-        assert!(expected.to_bits() == found.to_bits() || (*expected == 0.0 && *found == 0.0), "{expected} {found}");
-    }
-    paired
+    [Search::Thorough, Search::Short].map(|search| {
+        let paired = paired(routine, search);
+        for environment in environments {
+            let constants = run(&program.constants, &[], environment);
+            let expected = run(routine, &constants, environment);
+            let found = results(&paired, &constants, environment);
+            assert_eq!(expected.len(), found.len());
+            for (expected, found) in expected.iter().zip(&found) {
+                let is_zero = search == Search::Thorough && *expected == 0.0 && *found == 0.0;
+                assert!(expected.to_bits() == found.to_bits() || is_zero, "{search:?}: {expected} {found}");
+            }
+        }
+        paired
+    })
 }
 
 #[test]
@@ -84,9 +90,11 @@ fn random_routines_keep_every_bit() {
         let mut pool = Pool::new();
         let expressions = source.expressions(&mut pool, 8 + 4 * seed as usize);
         let roots = &expressions[expressions.len() / 2..];
-        let environment =
-            Environment { states: &[0.3, -0.7, 1.1, 0.9], negative: &[false, true], ..Environment::default() };
-        agrees(&mut pool, roots, &environment);
+        // Zeros of both signs are among the states.
+        let states = [[0.3, -0.7, 1.1, 0.9], [0.0, -0.7, -0.0, 0.9], [-0.0, 0.0, 0.0, -0.0]];
+        let environments =
+            states.each_ref().map(|states| Environment { states, negative: &[false, true], ..Environment::default() });
+        agrees(&mut pool, roots, &environments);
     }
 }
 
@@ -112,11 +120,11 @@ fn two_axes_take_as_many_operations_as_one() {
     let roots = planar_oscillator(&mut pool);
     let environment =
         Environment { states: &[0.1, -0.2, 3.0, 4.0], parameters: &[20.0, 0.5, 2.0, 9.81], ..Environment::default() };
-    let paired = agrees(&mut pool, &roots, &environment);
+    let found = agrees(&mut pool, &roots, &[environment]);
     let program = program(&mut pool, &roots);
-    assert_eq!((program.routines[0].counts.total(), paired.operations()), (10, 5));
-    assert!(paired.results.iter().all(|result| matches!(result, Half::In(..))));
-    assert_eq!(pair(&program.routines[0]), None, "too short for pairs to matter");
+    assert_eq!((program.routines[0].counts.total(), found.each_ref().map(Paired::operations)), (10, [5, 5]));
+    assert!(found.iter().flat_map(|paired| &paired.results).all(|result| matches!(result, Half::In(..))));
+    assert_eq!(pair(&program.routines[0], Search::Thorough), None, "too short for pairs to matter");
 }
 
 #[test]
@@ -128,7 +136,8 @@ fn where_nothing_repeats_there_are_no_pairs() {
         pool.add(square, number)
     });
     let program = program(&mut pool, &[chain]);
-    assert_eq!(pair(&program.routines[0]), None);
+    assert_eq!(pair(&program.routines[0], Search::Thorough), None);
+    assert_eq!(pair(&program.routines[0], Search::Short), None);
 }
 
 /// Two sums that start from neighbouring states and are neighbouring results, but the second needs the first.
@@ -140,6 +149,6 @@ fn operations_that_need_each_other_are_no_pair() {
     let sine = pool.call(Function::Sin, &[first]);
     let second = pool.add(y, sine);
     let environment = Environment { states: &[0.3, 0.7, -0.2], ..Environment::default() };
-    let paired = agrees(&mut pool, &[first, second], &environment);
-    assert!(paired.steps.iter().all(|step| matches!(step, Step::Single(_))));
+    let found = agrees(&mut pool, &[first, second], &[environment]);
+    assert!(found.iter().flat_map(|paired| &paired.steps).all(|step| matches!(step, Step::Single(_))));
 }

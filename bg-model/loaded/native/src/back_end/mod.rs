@@ -8,15 +8,15 @@ mod translate;
 use std::fmt;
 use std::sync::{Arc, LazyLock, Mutex};
 
-use bg_expressions::schedule::Operation;
 use cranelift_codegen::isa::OwnedTargetIsa;
 use cranelift_codegen::settings::{self, Configurable};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::default_libcall_names;
 
 use crate::program::{Inputs, Lengths, Program};
+use crate::steps::Steps;
 use functions::{SINE_AND_COSINE, called, sine_and_cosine};
-use translate::translate;
+use translate::{calls, translate};
 
 /// Longer programs are not translated: how long registers are sought for grows faster than the program.
 const LONGEST: usize = 20_000;
@@ -29,6 +29,8 @@ pub struct Function {
     entry: Entry,
     lengths: Lengths,
     results: usize,
+    appended: Vec<(u32, bool)>,
+    operations: usize,
     /// What holds the memory, until this is dropped.
     module: Mutex<Option<JITModule>>,
 }
@@ -61,31 +63,43 @@ impl Function {
     /// An operation takes a value that does not come before it.
     #[must_use]
     pub fn of(program: &Program) -> Option<Self> {
-        let lengths = program.lengths();
+        let mut lengths = program.lengths();
         let isa = MACHINE.as_ref().filter(|_| program.operations.len() <= LONGEST)?;
+        let steps = Steps::of(program, lengths.fixed);
+        lengths.fixed += steps.appended.len();
         let mut builder = JITBuilder::with_isa(Arc::clone(isa), default_libcall_names());
         builder.symbol(SINE_AND_COSINE, sine_and_cosine as *const u8);
-        for operation in &program.operations {
-            if let Operation::Call(function, _) = operation
-                && let Some(called) = called(*function)
-            {
-                builder.symbol(called.name, called.address);
-            }
+        for called in calls(&steps).filter_map(|(_, function, _)| called(function)) {
+            builder.symbol(called.name, called.address);
         }
-        Self::in_module(JITModule::new(builder), program, lengths)
+        Self::in_module(JITModule::new(builder), steps, program.results.len(), lengths)
     }
 
-    fn in_module(mut module: JITModule, program: &Program, lengths: Lengths) -> Option<Self> {
-        let id = translate(&mut module, program)?;
+    fn in_module(mut module: JITModule, steps: Steps, results: usize, lengths: Lengths) -> Option<Self> {
+        let id = translate(&mut module, &steps)?;
         module.finalize_definitions().ok()?;
         let address = module.get_finalized_function(id);
         // SAFETY: the function has been translated with this signature, in the convention of `extern "C"`.
         #[expect(unsafe_code, reason = "an address becomes a function")]
         let entry = unsafe { std::mem::transmute::<*const u8, Entry>(address) };
-        Some(Self { entry, lengths, results: program.results.len(), module: Mutex::new(Some(module)) })
+        let operations = steps.operations();
+        Some(Self { entry, lengths, results, appended: steps.appended, operations, module: Mutex::new(Some(module)) })
     }
 
-    /// Evaluates the program.
+    /// How many operations it has: on numbers, on pairs, and those that gather pairs or give them other signs.
+    #[must_use]
+    pub fn operations(&self) -> usize {
+        self.operations
+    }
+
+    /// What has to stand after what is fixed when the program is called: entries of it, side by side for pairs, with
+    /// `true` where the negative is meant.
+    #[must_use]
+    pub fn appended(&self) -> &[(u32, bool)] {
+        &self.appended
+    }
+
+    /// Evaluates the program. After what is fixed stands what is [appended](Self::appended).
     ///
     /// # Panics
     /// A slice is shorter than what the program reads; `results` has not one place for each result.

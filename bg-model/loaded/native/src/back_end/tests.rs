@@ -4,7 +4,8 @@ use bg_model::scalar::Scalar;
 use fastrand::Rng;
 
 use super::{Function, LONGEST};
-use crate::program::{Inputs, Operand, Program};
+use crate::program::{Inputs, Operand, Pairing, Program};
+use crate::steps::{Step, Steps};
 
 const LENGTHS: [usize; 4] = [5, 4, 3, 2];
 const FUNCTIONS: [expr::Function; 12] = [
@@ -53,7 +54,34 @@ fn program(random: &mut Rng) -> Program {
     let count = random.usize(..120);
     let operations = (0..count).map(|known| operation(random, known)).collect();
     let results = (0..random.usize(1..9)).map(|_| operand(random, count)).collect();
-    Program { operations, results }
+    Program { operations, results, pairing: Pairing::None }
+}
+
+/// A program twice, in the two axes of a plane: what is read stands side by side, some operations mix both axes, some are
+/// others in the second.
+fn in_a_plane(random: &mut Rng) -> Program {
+    let one = program(random);
+    let mut axis = |operand: Operand, axis: u32| {
+        let axis = if random.u32(..40) == 0 { 1 - axis } else { axis };
+        match operand {
+            Operand::Fixed(place) => Operand::Fixed(2 * place + axis),
+            Operand::State(place) => Operand::State(2 * place + axis),
+            Operand::Read(place) => Operand::Read(2 * place + axis),
+            // Only what comes before both.
+            Operand::Value(place) => Operand::Value(2 * place + axis),
+        }
+    };
+    let mut operations = Vec::new();
+    for operation in &one.operations {
+        operations.push(operation.map(|operand| axis(operand, 0)));
+        operations.push(match operation.map(|operand| axis(operand, 1)) {
+            Operation::Add(a, b) if operations.len() % 7 == 0 => Operation::Subtract(b, a),
+            Operation::Multiply(a, b) => Operation::Multiply(b, a),
+            other => other,
+        });
+    }
+    let results = one.results.iter().flat_map(|&result| [0, 1].map(|of| axis(result, of))).collect();
+    Program { operations, results, pairing: Pairing::Sought }
 }
 
 /// One operation after the other.
@@ -118,16 +146,22 @@ fn bits(of: &[f64]) -> Vec<u64> {
 #[test]
 fn random_programs_have_the_bits_of_one_operation_after_the_other() {
     let mut random = Rng::with_seed(11);
-    let mut numbers = 0;
+    let (mut numbers, mut pairs) = (0, 0);
     for round in 0..400 {
-        let program = program(&mut random);
+        let program = if round % 2 == 0 { program(&mut random) } else { in_a_plane(&mut random) };
+        let steps = Steps::of(&program, program.lengths().fixed).steps;
+        pairs += steps.iter().filter(|step| matches!(step, Step::Pair(_))).count();
         let function = Function::of(&program).expect("this machine has a back end");
         for _ in 0..4 {
             let mut draw = |count: usize| -> Vec<f64> {
                 // Zeros of both signs are among them.
                 (0..count).map(|_| [0.0, -0.0, 4.0 * random.f64() - 2.0][random.usize(..3)]).collect()
             };
-            let [fixed, states, read] = [LENGTHS[0], LENGTHS[1], LENGTHS[2]].map(&mut draw);
+            let [mut fixed, states, read] = [LENGTHS[0], LENGTHS[1], LENGTHS[2]].map(|count| draw(2 * count));
+            fixed.truncate(program.lengths().fixed);
+            for &(place, is_negative) in function.appended() {
+                fixed.push(if is_negative { -fixed[place as usize] } else { fixed[place as usize] });
+            }
             let negative = [random.bool(), random.bool()];
             let inputs = Inputs { fixed: &fixed, states: &states, read: &read, negative: &negative };
             let mut results = vec![7.0; program.results.len()];
@@ -136,7 +170,7 @@ fn random_programs_have_the_bits_of_one_operation_after_the_other() {
             numbers += results.iter().filter(|result| result.is_finite()).count();
         }
     }
-    assert!(numbers > 1000, "{numbers}");
+    assert!(numbers > 1000 && pairs > 300, "{numbers} {pairs}");
 }
 
 fn sum() -> Function {
@@ -144,7 +178,8 @@ fn sum() -> Function {
         Operation::Add(Operand::State(1), Operand::Read(0)),
         Operation::Select { switch: 1, negative: Operand::Value(0), positive: Operand::Fixed(2) },
     ];
-    Function::of(&Program { operations, results: vec![Operand::Value(1)] }).expect("this machine has a back end")
+    Function::of(&Program { operations, results: vec![Operand::Value(1)], pairing: Pairing::None })
+        .expect("this machine has a back end")
 }
 
 fn call(fixed: usize, states: usize, read: usize, switches: usize, results: usize) {
@@ -183,7 +218,7 @@ refused! {
 #[should_panic(expected = "values are taken after they are there")]
 fn a_value_before_it_is_there_is_refused() {
     let operations = vec![Operation::Negate(Operand::Value(0))];
-    let _ = Function::of(&Program { operations, results: Vec::new() });
+    let _ = Function::of(&Program { operations, ..Program::default() });
 }
 
 #[test]
@@ -210,7 +245,7 @@ fn the_longest_program_is_translated_and_no_longer_one() {
         let value = |of: usize| Operand::Value(u32::try_from(of).expect("few values"));
         let operand = |of: usize| if of == 0 { Operand::State(0) } else { value(of - 1) };
         let operations = (0..length).map(|of| Operation::Add(operand(of), Operand::Fixed(0))).collect();
-        Program { operations, results: vec![value(length - 1)] }
+        Program { operations, results: vec![value(length - 1)], pairing: Pairing::Sought }
     };
     let function = Function::of(&program(LONGEST)).expect("this machine has a back end");
     let mut results = [0.0];

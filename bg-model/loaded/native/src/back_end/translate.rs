@@ -1,9 +1,9 @@
-//! A program to instructions.
+//! Steps to instructions.
 //!
-//! In: a [`Program`]. Out: the body of one function of five addresses: what is fixed, the states, what is read, the
-//! branches, where results go. Method: one instruction of Cranelift for each operation, in the order of
-//! [`Program::order`]; inputs are read where they are used, and again where the last use is long ago; sine and cosine of
-//! one angle are one call.
+//! In: [`Steps`]. Out: the body of one function of five addresses: what is fixed, the states, what is read, the branches,
+//! where results go. Method: one instruction of Cranelift for each operation on numbers or on pairs, in the order of
+//! [`Steps::order`]; inputs are read where they are used, and again where the last use is long ago; a result is written
+//! as soon as it is there; sine and cosine of one angle are one call.
 
 use std::collections::HashMap;
 
@@ -11,27 +11,28 @@ use bg_expressions::expr;
 use bg_expressions::schedule::Operation;
 use cranelift_codegen::Context;
 use cranelift_codegen::ir::{
-    AbiParam, FuncRef, InstBuilder, MemFlagsData as MemFlags, Signature, StackSlotData, StackSlotKind, Type, Value,
-    types,
+    AbiParam, ConstantData, Endianness, FuncRef, InstBuilder, MemFlagsData as MemFlags, Signature, StackSlotData,
+    StackSlotKind, Type, Value, types,
 };
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::JITModule;
 use cranelift_module::{FuncId, Linkage, Module};
 
 use super::functions::{SINE_AND_COSINE, called};
-use crate::program::{Operand, Program};
+use crate::program::Operand;
+use crate::steps::{Given, Step, Steps};
 
-/// An input is read again where its last use is more operations ago: kept longer, it takes a register that values need
+/// An input is read again where its last use is more steps ago: kept longer, it takes a register that values need
 /// more (`docs/benchmarks/text.md`).
 const KEPT: usize = 24;
 
-/// Puts the function of a program into a module, which knows the functions that it calls; gives its number there. None
-/// where the back end cannot.
-pub fn translate(module: &mut JITModule, program: &Program) -> Option<FuncId> {
+/// Puts the function of a program's steps into a module, which knows the functions that it calls; gives its number
+/// there. None where the back end cannot.
+pub fn translate(module: &mut JITModule, steps: &Steps) -> Option<FuncId> {
     let mut context = module.make_context();
     let address = module.target_config().pointer_type();
     context.func.signature = signature(module, &[address; 5], &[]);
-    let functions = Functions::declared(module, &mut context, program)?;
+    let functions = Functions::declared(module, &mut context, steps)?;
     let mut reused = FunctionBuilderContext::new();
     let mut builder = FunctionBuilder::new(&mut context.func, &mut reused);
     let block = builder.create_block();
@@ -40,20 +41,36 @@ pub fn translate(module: &mut JITModule, program: &Program) -> Option<FuncId> {
     let [fixed, states, read, negative, results] = *builder.block_params(block) else {
         unreachable!("the signature has five addresses")
     };
-    let values = vec![None; program.operations.len()];
+    let values = vec![None; steps.steps.len()];
     let inputs = Loads { addresses: [fixed, states, read], used: HashMap::new() };
-    let mut body = Body { builder, program, functions, address, inputs, negative, values, written: 0 };
-    program.order().into_iter().for_each(|of| body.enter(of));
-    for (place, &result) in program.results.iter().enumerate() {
-        let value = body.operand(result);
-        body.builder.ins().store(MemFlags::trusted(), value, results, offset(place));
+    let mut body = Body { builder, steps, functions, address, inputs, negative, values, written: 0 };
+    let (of_steps, of_inputs) = places(steps);
+    for of in steps.order() {
+        body.enter(of);
+        // At once: a value that waits takes a register or a place on the stack.
+        of_steps[of].iter().for_each(|&(given, place)| body.give(given, results, place));
     }
+    of_inputs.into_iter().for_each(|(given, place)| body.give(given, results, place));
     body.builder.ins().return_(&[]);
     body.builder.seal_all_blocks();
     body.builder.finalize(module.target_config());
     let id = module.declare_anonymous_function(&context.func.signature).ok()?;
     module.define_function(id, &mut context).ok()?;
     Some(id)
+}
+
+/// Results with the place of the first.
+type Placed = Vec<(Given, usize)>;
+
+/// Of each step the results that are its value, and the other results.
+fn places(steps: &Steps) -> (Vec<Placed>, Placed) {
+    let (mut of_steps, mut of_inputs) = (vec![Vec::new(); steps.steps.len()], Vec::new());
+    let mut place = 0;
+    for &given in &steps.results {
+        given.operand().value().map_or(&mut of_inputs, |of| &mut of_steps[of]).push((given, place));
+        place += given.count();
+    }
+    (of_steps, of_inputs)
 }
 
 fn signature(module: &JITModule, takes: &[Type], gives: &[Type]) -> Signature {
@@ -63,44 +80,52 @@ fn signature(module: &JITModule, takes: &[Type], gives: &[Type]) -> Signature {
     signature
 }
 
-/// The functions that a program calls.
+/// The functions that steps call.
 struct Functions {
     alone: HashMap<expr::Function, FuncRef>,
-    sine_and_cosine: FuncRef,
-    /// Of a sine or a cosine the operation that is the other one of the same angle.
+    sine_and_cosine: Option<FuncRef>,
+    /// Of a sine or a cosine the step that is the other one of the same angle.
     partners: HashMap<usize, usize>,
 }
 
+/// The functions that steps call, with their arguments.
+pub fn calls(steps: &Steps) -> impl Iterator<Item = (usize, expr::Function, &[Operand])> {
+    steps.steps.iter().enumerate().filter_map(|(of, step)| match step {
+        Step::Number(Operation::Call(function, arguments)) => Some((of, *function, &arguments[..])),
+        _ => None,
+    })
+}
+
 impl Functions {
-    fn declared(module: &mut JITModule, context: &mut Context, program: &Program) -> Option<Self> {
+    fn declared(module: &mut JITModule, context: &mut Context, steps: &Steps) -> Option<Self> {
         let address = module.target_config().pointer_type();
         let mut declare = |name, takes: &[Type], gives: &[Type]| {
             let signature = signature(module, takes, gives);
             let known = module.declare_function(name, Linkage::Import, &signature).ok()?;
             Some(module.declare_func_in_func(known, &mut context.func))
         };
-        let sine_and_cosine = declare(SINE_AND_COSINE, &[types::F64, address], &[])?;
+        let partners = partners(steps);
+        let sine_and_cosine = match partners.is_empty() {
+            true => None,
+            false => Some(declare(SINE_AND_COSINE, &[types::F64, address], &[])?),
+        };
         let mut alone = HashMap::new();
-        for operation in &program.operations {
-            if let Operation::Call(function, arguments) = operation
-                && let Some(called) = called(*function)
-                && !alone.contains_key(function)
+        for (_, function, arguments) in calls(steps) {
+            if let Some(called) = called(function)
+                && !alone.contains_key(&function)
             {
-                alone.insert(*function, declare(called.name, &vec![types::F64; arguments.len()], &[types::F64])?);
+                alone.insert(function, declare(called.name, &vec![types::F64; arguments.len()], &[types::F64])?);
             }
         }
-        Some(Self { alone, sine_and_cosine, partners: partners(program) })
+        Some(Self { alone, sine_and_cosine, partners })
     }
 }
 
 /// Of sines and cosines of the same angles each one's other.
-fn partners(program: &Program) -> HashMap<usize, usize> {
+fn partners(steps: &Steps) -> HashMap<usize, usize> {
     use expr::Function::{Cos, Sin};
     let of = |wanted: expr::Function| {
-        program.operations.iter().enumerate().filter_map(move |(of, operation)| match operation {
-            Operation::Call(function, arguments) if *function == wanted => Some((arguments[0], of)),
-            _ => None,
-        })
+        calls(steps).filter(move |&(_, function, _)| function == wanted).map(|(of, _, arguments)| (arguments[0], of))
     };
     let sines: HashMap<Operand, usize> = of(Sin).collect();
     of(Cos).filter_map(|(angle, of)| sines.get(&angle).map(|&sine| [(of, sine), (sine, of)])).flatten().collect()
@@ -109,13 +134,14 @@ fn partners(program: &Program) -> HashMap<usize, usize> {
 /// The body of a function while it is written.
 struct Body<'a> {
     builder: FunctionBuilder<'a>,
-    program: &'a Program,
+    steps: &'a Steps,
     functions: Functions,
     address: Type,
     inputs: Loads,
     negative: Value,
+    /// Of each step its number or its pair.
     values: Vec<Option<Value>>,
-    /// How many operations are written.
+    /// How many steps are written.
     written: usize,
 }
 
@@ -123,58 +149,156 @@ struct Body<'a> {
 struct Loads {
     /// Where what is fixed, states and what is read stand.
     addresses: [Value; 3],
-    /// Those that have been read since the last call, and before which operation each was used last.
-    used: HashMap<Operand, (Value, usize)>,
+    /// Those that have been read since the last call, as a number or a pair, and before which step each was used last.
+    used: HashMap<(Operand, Type), (Value, usize)>,
 }
 
+const PAIR: Type = types::F64X2;
+
 impl Body<'_> {
-    fn operand(&mut self, operand: Operand) -> Value {
-        let (of, place) = match operand {
-            Operand::Value(value) => {
-                return self.values[value as usize].expect("values are taken after they are there");
+    /// A number or a pair. Numbers of pairs are taken out of them when they are first asked for: not all are.
+    fn operand(&mut self, operand: Operand, kind: Type) -> Value {
+        if let Operand::Value(of) = operand {
+            let of = of as usize;
+            if let (None, Step::Half(pair, half)) = (self.values[of], &self.steps.steps[of]) {
+                let pair = self.operand(*pair, PAIR);
+                self.values[of] = Some(self.builder.ins().extractlane(pair, *half));
             }
-            Operand::Fixed(place) => (0, place),
-            Operand::State(place) => (1, place),
-            Operand::Read(place) => (2, place),
-        };
-        let value = match self.inputs.used.get(&operand) {
+            return self.values[of].expect("values are taken after they are there");
+        }
+        let value = match self.inputs.used.get(&(operand, kind)) {
             Some(&(value, last)) if self.written - last <= KEPT => value,
-            _ => {
-                let flags = MemFlags::trusted().with_readonly();
-                self.builder.ins().load(types::F64, flags, self.inputs.addresses[of], offset(place as usize))
-            }
+            _ => self.load(operand, kind),
         };
-        self.inputs.used.insert(operand, (value, self.written));
+        self.inputs.used.insert((operand, kind), (value, self.written));
         value
     }
 
-    /// Writes an operation, unless it is there.
+    fn load(&mut self, operand: Operand, kind: Type) -> Value {
+        let (of, place) = match operand {
+            Operand::Fixed(place) => (0, place),
+            Operand::State(place) => (1, place),
+            Operand::Read(place) => (2, place),
+            Operand::Value(_) => unreachable!("the value of a step is no input"),
+        };
+        self.builder.ins().load(kind, memory(kind).with_readonly(), self.inputs.addresses[of], offset(place as usize))
+    }
+
+    /// Writes results to their places.
+    fn give(&mut self, given: Given, results: Value, place: usize) {
+        let kind = if let Given::Pair(_) = given { PAIR } else { types::F64 };
+        let value = self.operand(given.operand(), kind);
+        self.builder.ins().store(memory(kind), value, results, offset(place));
+    }
+
+    /// Writes a step, unless it is there.
     fn enter(&mut self, of: usize) {
         if self.values[of].is_some() {
             return;
         }
-        let program = self.program;
-        let operation = &program.operations[of];
-        let operands: Vec<Value> = operation.operands().into_iter().map(|operand| self.operand(operand)).collect();
+        let steps = self.steps;
+        let value = match &steps.steps[of] {
+            Step::Half(..) => return,
+            Step::Number(operation) => {
+                let operands = self.operands(operation, types::F64);
+                if let Operation::Call(function, _) = operation {
+                    self.inputs.used.clear();
+                    if let Some(&partner) = self.functions.partners.get(&of) {
+                        let [sine, cosine] = self.sine_and_cosine(operands[0]);
+                        let is_sine = *function == expr::Function::Sin;
+                        self.values[partner] = Some(if is_sine { cosine } else { sine });
+                        if is_sine { sine } else { cosine }
+                    } else {
+                        self.operation(operation, &operands)
+                    }
+                } else {
+                    self.operation(operation, &operands)
+                }
+            }
+            Step::Pair(operation) => {
+                let operands = self.operands(operation, PAIR);
+                self.operation(operation, &operands)
+            }
+            Step::Gather(both) => self.gathered(*both),
+            Step::Turn(of, turn) => self.turned(*of, *turn),
+        };
+        self.values[of] = Some(value);
         self.written += 1;
-        if let Operation::Call(..) = operation {
-            self.inputs.used.clear();
+    }
+
+    fn operands(&mut self, operation: &Operation<Operand>, kind: Type) -> Vec<Value> {
+        operation.operands().into_iter().map(|operand| self.operand(operand, kind)).collect()
+    }
+
+    /// The pair that a number is of, and which of its numbers it is.
+    fn half_of(&mut self, number: Operand) -> Option<(Value, u8)> {
+        match &self.steps.steps[number.value()?] {
+            Step::Half(pair, half) => Some((self.operand(*pair, PAIR), *half)),
+            _ => None,
         }
-        if let Some(&partner) = self.functions.partners.get(&of) {
-            let [sine, cosine] = self.sine_and_cosine(operands[0]);
-            let is_sine = matches!(operation, Operation::Call(expr::Function::Sin, _));
-            let (own, other) = if is_sine { (sine, cosine) } else { (cosine, sine) };
-            (self.values[of], self.values[partner]) = (Some(own), Some(other));
-        } else {
-            self.values[of] = Some(self.operation(operation, &operands));
+    }
+
+    /// The pair of two numbers, by one instruction where one of them stands in its place of another pair already.
+    fn gathered(&mut self, [first, second]: [Operand; 2]) -> Value {
+        match [first, second].map(|number| self.half_of(number)) {
+            [Some(first), Some(second)] => self.shuffled(first, second),
+            [Some((pair, 0)), _] => {
+                let second = self.operand(second, types::F64);
+                self.builder.ins().insertlane(pair, second, 1)
+            }
+            [_, Some((pair, 1))] => {
+                let first = self.operand(first, types::F64);
+                self.builder.ins().insertlane(pair, first, 0)
+            }
+            _ if first == second => {
+                let both = self.operand(first, types::F64);
+                self.builder.ins().splat(PAIR, both)
+            }
+            _ => {
+                let begun = if first.value().is_some() {
+                    let first = self.operand(first, types::F64);
+                    self.builder.ins().splat(PAIR, first)
+                } else {
+                    let first = self.load(first, types::F64);
+                    self.builder.ins().scalar_to_vector(PAIR, first)
+                };
+                let second = self.operand(second, types::F64);
+                self.builder.ins().insertlane(begun, second, 1)
+            }
         }
+    }
+
+    /// A number of one pair, then one of another.
+    fn shuffled(&mut self, first: (Value, u8), second: (Value, u8)) -> Value {
+        let bytes_of = |(_, half): (Value, u8), begin: u8| begin + 8 * half..begin + 8 * half + 8;
+        let bytes: Vec<u8> = bytes_of(first, 0).chain(bytes_of(second, 16)).collect();
+        let mask = self.builder.func.dfg.immediates.push(ConstantData::from(bytes));
+        let [first, second] = [first, second].map(|(pair, _)| self.in_bits(types::I8X16, pair));
+        let shuffled = self.builder.ins().shuffle(first, second, mask);
+        self.in_bits(PAIR, shuffled)
+    }
+
+    fn in_bits(&mut self, kind: Type, value: Value) -> Value {
+        self.builder.ins().bitcast(kind, MemFlags::new().with_endianness(Endianness::Little), value)
+    }
+
+    fn turned(&mut self, pair: Operand, turn: [bool; 2]) -> Value {
+        let pair = self.operand(pair, PAIR);
+        if turn == [true; 2] {
+            return self.builder.ins().fneg(pair);
+        }
+        let signs = turn.map(|is_turned| if is_turned { -0.0 } else { 0.0_f64 }.to_le_bytes()).concat();
+        let signs = self.builder.func.dfg.constants.insert(ConstantData::from(signs));
+        let signs = self.builder.ins().vconst(PAIR, signs);
+        self.builder.ins().bxor(pair, signs)
     }
 
     fn sine_and_cosine(&mut self, angle: Value) -> [Value; 2] {
         let both = StackSlotData::new(StackSlotKind::ExplicitSlot, 16, 3);
         let both = self.builder.create_sized_stack_slot(both);
         let to = self.builder.ins().stack_addr(self.address, both, 0);
-        self.builder.ins().call(self.functions.sine_and_cosine, &[angle, to]);
+        let function = self.functions.sine_and_cosine.expect("it is declared where there are both");
+        self.builder.ins().call(function, &[angle, to]);
         [0, 8].map(|offset| self.builder.ins().load(types::F64, MemFlags::trusted(), to, offset))
     }
 
@@ -199,6 +323,11 @@ impl Body<'_> {
             }
         }
     }
+}
+
+/// How numbers and pairs stand in a slice: as a pair begins at any number, not at a multiple of its size.
+fn memory(kind: Type) -> MemFlags {
+    if kind == PAIR { MemFlags::new().with_notrap() } else { MemFlags::trusted() }
 }
 
 /// Where the number of this place stands in a slice, bytes.
