@@ -11,7 +11,7 @@ use crate::units;
 
 /// What a variable is, and which of its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum VariableKind {
     /// The time, s.
     Time,
     /// A parameter: fixed from the start on.
@@ -39,7 +39,7 @@ pub(crate) struct Counts {
 }
 
 /// A kind of variable, and how many of it there are.
-type Row = (fn(usize) -> Kind, usize);
+type Row = (fn(usize) -> VariableKind, usize);
 
 impl Counts {
     pub const fn of(description: &Description) -> Self {
@@ -55,18 +55,18 @@ impl Counts {
     /// The kinds with their numbers, in the order of the value references.
     const fn rows(&self) -> [Row; 7] {
         [
-            (|_| Kind::Time, 1),
-            (Kind::Parameter, self.parameters),
-            (Kind::Input, self.inputs),
-            (Kind::Output, self.outputs),
-            (Kind::State, self.states),
-            (Kind::Derivative, self.states),
-            (Kind::Guard, self.guards),
+            (|_| VariableKind::Time, 1),
+            (VariableKind::Parameter, self.parameters),
+            (VariableKind::Input, self.inputs),
+            (VariableKind::Output, self.outputs),
+            (VariableKind::State, self.states),
+            (VariableKind::Derivative, self.states),
+            (VariableKind::Guard, self.guards),
         ]
     }
 
     /// What has this value reference.
-    pub fn kind(&self, reference: u32) -> Option<Kind> {
+    pub fn kind(&self, reference: u32) -> Option<VariableKind> {
         let mut rest = usize::try_from(reference).ok()?;
         for (kind, count) in self.rows() {
             if rest < count {
@@ -78,7 +78,7 @@ impl Counts {
     }
 
     /// All variables.
-    pub fn all(&self) -> impl Iterator<Item = Kind> + use<> {
+    pub fn all(&self) -> impl Iterator<Item = VariableKind> + use<> {
         self.rows().into_iter().flat_map(|(kind, count)| (0..count).map(kind))
     }
 
@@ -88,16 +88,16 @@ impl Counts {
     }
 
     /// The value reference of a variable.
-    pub fn reference(&self, kind: Kind) -> usize {
+    pub fn reference(&self, kind: VariableKind) -> usize {
         let first = |row: usize| self.rows()[..row].iter().map(|(_, count)| count).sum::<usize>();
         match kind {
-            Kind::Time => 0,
-            Kind::Parameter(index) => first(1) + index,
-            Kind::Input(index) => first(2) + index,
-            Kind::Output(index) => first(3) + index,
-            Kind::State(index) => first(4) + index,
-            Kind::Derivative(index) => first(5) + index,
-            Kind::Guard(index) => first(6) + index,
+            VariableKind::Time => 0,
+            VariableKind::Parameter(index) => first(1) + index,
+            VariableKind::Input(index) => first(2) + index,
+            VariableKind::Output(index) => first(3) + index,
+            VariableKind::State(index) => first(4) + index,
+            VariableKind::Derivative(index) => first(5) + index,
+            VariableKind::Guard(index) => first(6) + index,
         }
     }
 }
@@ -121,13 +121,13 @@ pub(crate) fn names(description: &Description) -> Vec<String> {
     let derivatives: Vec<String> = states.iter().map(|name| own(&format!("der({name})"), "derivative")).collect();
     let guards: Vec<String> = (0..counts.guards).map(|index| own(&format!("guard[{}]", index + 1), "guard")).collect();
     let name = |kind| match kind {
-        Kind::Time => "time".to_owned(),
-        Kind::Parameter(index) => parameters[index].clone(),
-        Kind::Input(index) => inputs[index].clone(),
-        Kind::Output(index) => outputs[index].clone(),
-        Kind::State(index) => states[index].clone(),
-        Kind::Derivative(index) => derivatives[index].clone(),
-        Kind::Guard(index) => guards[index].clone(),
+        VariableKind::Time => "time".to_owned(),
+        VariableKind::Parameter(index) => parameters[index].clone(),
+        VariableKind::Input(index) => inputs[index].clone(),
+        VariableKind::Output(index) => outputs[index].clone(),
+        VariableKind::State(index) => states[index].clone(),
+        VariableKind::Derivative(index) => derivatives[index].clone(),
+        VariableKind::Guard(index) => guards[index].clone(),
     };
     counts.all().map(name).collect()
 }
@@ -145,15 +145,15 @@ pub(crate) fn clock_names(names: &[String], clocks: usize) -> Vec<String> {
 }
 
 /// The unit of a variable; none of a guard, whose law does not say.
-pub(crate) fn unit(description: &Description, kind: Kind) -> Option<String> {
+pub(crate) fn unit(description: &Description, kind: VariableKind) -> Option<String> {
     let written = |unit: &str| if unit.is_empty() { "1".to_owned() } else { unit.to_owned() };
     match kind {
-        Kind::Time => Some("s".to_owned()),
-        Kind::Parameter(index) => Some(written(description.parameters[index].unit)),
-        Kind::Input(index) => Some(written(description.inputs[index].unit)),
-        Kind::Output(index) => Some(written(description.outputs[index].unit)),
-        Kind::State(index) => Some(written(description.states[index].unit)),
-        Kind::Derivative(index) => Some(units::per_second(description.states[index].unit)),
-        Kind::Guard(_) => None,
+        VariableKind::Time => Some("s".to_owned()),
+        VariableKind::Parameter(index) => Some(written(description.parameters[index].unit)),
+        VariableKind::Input(index) => Some(written(description.inputs[index].unit)),
+        VariableKind::Output(index) => Some(written(description.outputs[index].unit)),
+        VariableKind::State(index) => Some(written(description.states[index].unit)),
+        VariableKind::Derivative(index) => Some(units::per_second(description.states[index].unit)),
+        VariableKind::Guard(_) => None,
     }
 }

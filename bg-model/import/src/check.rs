@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::ImportError;
 use crate::number::number;
-use crate::robot::{Kind, Loop, Pose, Robot};
+use crate::robot::{JointKind, Loop, Pose, Robot};
 
 /// How far the ends of a loop may be apart at the start, in parts of the largest place of a link, or turned, rad: more
 /// is no rounding.
@@ -18,10 +18,10 @@ pub fn tell_open_loops(robot: &mut Robot) {
     let mut places = vec![Pose::identity(); robot.links.len()];
     for joint in &robot.joints {
         let moved = match joint.kind {
-            Kind::Revolute => Rotation3::new(joint.axis * joint.start).into_inner(),
+            JointKind::Revolute => Rotation3::new(joint.axis * joint.start).into_inner(),
             _ => Matrix3::identity(),
         };
-        let travel = if joint.kind == Kind::Prismatic { joint.axis * joint.start } else { Vector3::zeros() };
+        let travel = if joint.kind == JointKind::Prismatic { joint.axis * joint.start } else { Vector3::zeros() };
         let motion = Pose { turned: moved, place: travel };
         places[joint.child] = places[joint.parent].then(&joint.in_parent).then(&motion).then(&joint.in_child.inverse());
     }
@@ -31,11 +31,11 @@ pub fn tell_open_loops(robot: &mut Robot) {
     for closed in &robot.loops {
         let [first, second] = ends(closed);
         let across = first.inverse().then(&second);
-        let gap = if closed.kind == Kind::Prismatic { across.place.xy().norm() } else { across.place.norm() };
+        let gap = if closed.kind == JointKind::Prismatic { across.place.xy().norm() } else { across.place.norm() };
         // The angle between the axes that are held.
         let turned = match closed.kind {
-            Kind::Spherical => 0.0,
-            Kind::Revolute => across.turned.column(2).xy().norm(),
+            JointKind::Spherical => 0.0,
+            JointKind::Revolute => across.turned.column(2).xy().norm(),
             _ => (across.turned - Matrix3::identity()).amax(),
         };
         if gap > CLOSED * extent || turned > CLOSED {

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::xml::Place;
+use crate::xml::FilePlace;
 
 /// What is wrong with the file, where, and what to do.
 #[derive(Debug, Error)]
@@ -49,7 +49,7 @@ pub enum ImportError {
     #[error("{place}: <{element}> is not read here: {action}")]
     NotExpanded {
         /// Where.
-        place: Place,
+        place: FilePlace,
         /// Which.
         element: String,
         /// What to do.
@@ -59,7 +59,7 @@ pub enum ImportError {
     #[error("{place}: <{element}> has no `{missing}`: add it")]
     Missing {
         /// Where.
-        place: Place,
+        place: FilePlace,
         /// Which element.
         element: String,
         /// What is missing.
@@ -69,7 +69,7 @@ pub enum ImportError {
     #[error("{place}: `{name}` of <{element}> is \"{value}\": it must be {wanted}")]
     Value {
         /// Where.
-        place: Place,
+        place: FilePlace,
         /// Which element.
         element: String,
         /// Which attribute.
@@ -83,7 +83,7 @@ pub enum ImportError {
     #[error("{place}: there is no {what} `{name}`: check the spelling")]
     Unknown {
         /// Where.
-        place: Place,
+        place: FilePlace,
         /// What should have it.
         what: &'static str,
         /// The name.
@@ -93,7 +93,7 @@ pub enum ImportError {
     #[error("{place}: a second {what} `{name}`: rename one of the two")]
     Twice {
         /// Where.
-        place: Place,
+        place: FilePlace,
         /// What has it.
         what: &'static str,
         /// The name.
@@ -103,7 +103,7 @@ pub enum ImportError {
     #[error("{place}: {what}")]
     Wrong {
         /// Where.
-        place: Place,
+        place: FilePlace,
         /// What is wrong, and what to do.
         what: String,
     },

@@ -9,7 +9,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::number::number;
-use crate::robot::{Drag, Inertia, Joint, Kind, Pose, Robot};
+use crate::robot::{Drag, Inertia, Joint, JointKind, Pose, Robot};
 use crate::{ImportError, Options, check, couple};
 
 /// Of the whole mass: what a link without mass gets that has to stay. Of the largest moment: what a moment of 0 gets.
@@ -135,7 +135,8 @@ fn one_bodies(robot: &mut Robot, keep_fixed: bool) {
 fn is_merged(robot: &Robot, joint: &Joint, keep_fixed: bool) -> bool {
     let is_heavy = |link: usize| robot.links[link].inertia.is_some();
     // What stands on the ground is ground.
-    joint.kind == Kind::Fixed && !(keep_fixed && joint.parent != 0 && is_heavy(joint.child) && is_heavy(joint.parent))
+    joint.kind == JointKind::Fixed
+        && !(keep_fixed && joint.parent != 0 && is_heavy(joint.child) && is_heavy(joint.parent))
 }
 
 /// Gives what the child of a fixed joint has to its parent.
@@ -231,25 +232,27 @@ fn combined(robot: &Robot, (first, second): (usize, usize)) -> Option<Joint> {
         return None;
     }
     let kind = match (first.kind, second.kind) {
-        (Kind::Revolute, Kind::Revolute) if (place - other).norm() < EXACT && axis.dot(&other_axis).abs() < EXACT => {
-            Kind::Universal
+        (JointKind::Revolute, JointKind::Revolute)
+            if (place - other).norm() < EXACT && axis.dot(&other_axis).abs() < EXACT =>
+        {
+            JointKind::Universal
         }
-        (Kind::Universal, Kind::Revolute) if (place - other).norm() < EXACT => Kind::Spherical,
-        (Kind::Revolute, Kind::Prismatic) | (Kind::Prismatic, Kind::Revolute)
+        (JointKind::Universal, JointKind::Revolute) if (place - other).norm() < EXACT => JointKind::Spherical,
+        (JointKind::Revolute, JointKind::Prismatic) | (JointKind::Prismatic, JointKind::Revolute)
             if axis.cross(&other_axis).norm() < EXACT
                 && axis.dot(&other_axis) > 0.0
                 && axis.cross(&(other - place)).norm() < EXACT =>
         {
-            Kind::Cylindrical
+            JointKind::Cylindrical
         }
         _ => return None,
     };
-    if kind == Kind::Spherical && (first.in_child.turned * Vector3::y()).cross(&other_axis).norm() < EXACT {
+    if kind == JointKind::Spherical && (first.in_child.turned * Vector3::y()).cross(&other_axis).norm() < EXACT {
         return None;
     }
     // The common frame, in the link between.
     let axes = match kind {
-        Kind::Universal => Matrix3::from_columns(&[axis, other_axis, axis.cross(&other_axis)]),
+        JointKind::Universal => Matrix3::from_columns(&[axis, other_axis, axis.cross(&other_axis)]),
         _ => first.in_child.turned,
     };
     let frame = Pose { turned: axes, place };
@@ -262,10 +265,10 @@ fn combined(robot: &Robot, (first, second): (usize, usize)) -> Option<Joint> {
     })
 }
 
-fn word(kind: Kind) -> &'static str {
+fn word(kind: JointKind) -> &'static str {
     match kind {
-        Kind::Universal => "universal",
-        Kind::Spherical => "spherical",
+        JointKind::Universal => "universal",
+        JointKind::Spherical => "spherical",
         _ => "cylindrical",
     }
 }

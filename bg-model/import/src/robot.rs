@@ -154,7 +154,7 @@ pub struct Spring {
 
 /// Which motion a joint leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum JointKind {
     /// None.
     Fixed,
     /// All.
@@ -177,7 +177,7 @@ pub struct Joint {
     /// As in the file.
     pub name: String,
     /// Which motion it leaves.
-    pub kind: Kind,
+    pub kind: JointKind,
     /// The index of the link that carries.
     pub parent: usize,
     /// The index of the link that is carried.
@@ -208,7 +208,7 @@ pub struct Joint {
 impl Joint {
     /// A joint with nothing on it.
     #[must_use]
-    pub fn new(name: &str, kind: Kind, (parent, child): (usize, usize), in_parent: Pose) -> Self {
+    pub fn new(name: &str, kind: JointKind, (parent, child): (usize, usize), in_parent: Pose) -> Self {
         Self {
             name: name.to_owned(),
             kind,
@@ -237,7 +237,7 @@ impl Joint {
     /// Whether it has an angle or a travel of its own.
     #[must_use]
     pub fn is_scalar(&self) -> bool {
-        matches!(self.kind, Kind::Revolute | Kind::Prismatic)
+        matches!(self.kind, JointKind::Revolute | JointKind::Prismatic)
     }
 }
 
@@ -247,7 +247,7 @@ pub struct Loop {
     /// As in the file, or made of the links' names.
     pub name: String,
     /// Which motion it leaves; of a revolute or prismatic one about or along z of both frames.
-    pub kind: Kind,
+    pub kind: JointKind,
     /// The links, and the frame in each.
     pub ends: [(usize, Pose); 2],
 }

@@ -3,7 +3,7 @@
 //! In: what nobody has asked for ([`crate::xml::unread`]) and a format's [`Rule`]s. Out: sentences with the lines. An
 //! element or attribute without a rule is a note, so that nothing is left out in silence.
 
-use crate::xml::{Place, Unread};
+use crate::xml::{FilePlace, Unread};
 
 /// What is known of an element or attribute that is not used.
 pub struct Rule {
@@ -44,7 +44,7 @@ const LINES: usize = 4;
 
 /// A sentence for each kind of thing that was not used.
 pub fn notes(unread: &[Unread], rules: &[Rule]) -> Vec<String> {
-    let mut kinds: Vec<(String, Vec<&Place>)> = Vec::new();
+    let mut kinds: Vec<(String, Vec<&FilePlace>)> = Vec::new();
     for thing in unread {
         let Some(lost) = lost(thing, rules) else { continue };
         let what = match &thing.attribute {
@@ -80,7 +80,7 @@ fn lost(thing: &Unread, rules: &[Rule]) -> Option<&'static str> {
 }
 
 /// Places in one: "lines 3, 5 and 7".
-fn listed(places: &[&Place]) -> String {
+fn listed(places: &[&FilePlace]) -> String {
     if let [place] = places {
         return place.to_string();
     }
@@ -105,7 +105,7 @@ mod tests {
             element: element.to_owned(),
             around: "world".to_owned(),
             attribute: attribute.map(|(name, value)| (name.to_owned(), value.to_owned())),
-            place: Place { file: None, line },
+            place: FilePlace { file: None, line },
         };
         let rules = [
             harmless("light", "", "seen only"),

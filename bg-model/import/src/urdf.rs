@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use crate::robot::{Coupling, Inertia, Joint, Kind, Law, Link, Loop, Pose, Robot, with_z};
+use crate::robot::{Coupling, Inertia, Joint, JointKind, Law, Link, Loop, Pose, Robot, with_z};
 use crate::unread::{Rule, harmless, told, unless};
 use crate::xml::{Node, unread};
 use crate::{ImportError, Options};
@@ -105,10 +105,10 @@ impl<'n> Reader<'n> {
         };
         node.children.iter().filter(|child| about_axis.contains(&child.name.as_str())).for_each(Node::mark_deep);
         let kind = match word {
-            "revolute" | "continuous" => Kind::Revolute,
-            "prismatic" => Kind::Prismatic,
-            "fixed" => Kind::Fixed,
-            "floating" => Kind::Free,
+            "revolute" | "continuous" => JointKind::Revolute,
+            "prismatic" => JointKind::Prismatic,
+            "fixed" => JointKind::Fixed,
+            "floating" => JointKind::Free,
             "planar" => return self.planar(name, ends, origin, &axis(node)?),
             other => {
                 let wanted = "revolute, continuous, prismatic, fixed, floating or planar";
@@ -185,7 +185,7 @@ impl<'n> Reader<'n> {
         let Some((index, what)) = crate::couple::impossible(&self.couplings, &self.joints) else { return Ok(()) };
         let follower = self.couplings[index].follower;
         let node = self.mimics.iter().find(|(joint, _)| *joint == follower).map(|(_, node)| &node.place);
-        Err(ImportError::Wrong { place: node.cloned().unwrap_or(crate::xml::Place { file: None, line: 1 }), what })
+        Err(ImportError::Wrong { place: node.cloned().unwrap_or(crate::xml::FilePlace { file: None, line: 1 }), what })
     }
 
     /// `loop_joint`: two links, a frame in each.
@@ -193,10 +193,10 @@ impl<'n> Reader<'n> {
         for node in root.children("loop_joint") {
             let name = node.needed("name")?;
             let kind = match node.needed("type")? {
-                "fixed" => Kind::Fixed,
-                "revolute" | "continuous" => Kind::Revolute,
-                "prismatic" => Kind::Prismatic,
-                "spherical" | "ball" => Kind::Spherical,
+                "fixed" => JointKind::Fixed,
+                "revolute" | "continuous" => JointKind::Revolute,
+                "prismatic" => JointKind::Prismatic,
+                "spherical" | "ball" => JointKind::Spherical,
                 other => {
                     return Err(node.bad("type", other, "fixed, revolute, continuous, prismatic, spherical or ball"));
                 }
@@ -206,7 +206,7 @@ impl<'n> Reader<'n> {
                 Ok::<_, ImportError>((self.link(end)?, frame(end)?))
             };
             let (first, second) = (end("link1")?, end("link2")?);
-            let axes = if matches!(kind, Kind::Revolute | Kind::Prismatic) {
+            let axes = if matches!(kind, JointKind::Revolute | JointKind::Prismatic) {
                 with_z(&axis(node)?)
             } else {
                 Matrix3::identity()
@@ -227,9 +227,9 @@ impl<'n> Reader<'n> {
     ) -> Result<(), ImportError> {
         let across = Vector3::ith(axis.iamin(), 1.0).cross(axis).normalize();
         let steps = [
-            ("x", Kind::Prismatic, across),
-            ("y", Kind::Prismatic, axis.cross(&across)),
-            ("turn", Kind::Revolute, *axis),
+            ("x", JointKind::Prismatic, across),
+            ("y", JointKind::Prismatic, axis.cross(&across)),
+            ("turn", JointKind::Revolute, *axis),
         ];
         let (mut from, mut frame) = (parent, origin);
         for (step, kind, axis) in steps {
@@ -290,7 +290,7 @@ impl<'n> Reader<'n> {
         };
         self.links.push(Link::new("ground"));
         let ground = self.links.len() - 1;
-        let (kind, name) = if self.options.free_base { (Kind::Free, "base") } else { (Kind::Fixed, "base") };
+        let (kind, name) = if self.options.free_base { (JointKind::Free, "base") } else { (JointKind::Fixed, "base") };
         self.joints.push(Joint::new(name, kind, (ground, base), Pose::identity()));
         if !self.options.free_base
             && let Some(inertia) = &self.links[base].inertia

@@ -16,14 +16,14 @@ use crate::ImportError;
 
 /// Where an element is.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct FilePlace {
     /// An included file; none is the file itself.
     pub file: Option<Rc<str>>,
     /// From 1.
     pub line: u32,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePlace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.file {
             Some(file) => write!(f, "line {} of {file}", self.line),
@@ -38,7 +38,7 @@ pub struct Node {
     /// With its prefix.
     pub name: String,
     /// Where it is.
-    pub place: Place,
+    pub place: FilePlace,
     /// Which model it is from: 0 is the file itself, others are attached to it.
     pub model: usize,
     attributes: Vec<(String, String)>,
@@ -47,7 +47,7 @@ pub struct Node {
     is_read: Cell<bool>,
     used: RefCell<BTreeSet<String>>,
     /// What default classes give it: attribute, value and where it stands there.
-    inherited: RefCell<Vec<(String, String, Place)>>,
+    inherited: RefCell<Vec<(String, String, FilePlace)>>,
 }
 
 /// What nobody has asked for.
@@ -60,7 +60,7 @@ pub struct Unread {
     /// None where it is the element itself.
     pub attribute: Option<(String, String)>,
     /// Where it is.
-    pub place: Place,
+    pub place: FilePlace,
 }
 
 impl Node {
@@ -131,7 +131,7 @@ impl Node {
         let line = breaks.partition_point(|&at| at < node.range().start) + 1;
         Self {
             name: prefixed(node.tag_name().namespace(), node.tag_name().name()),
-            place: Place { file: file.cloned(), line: u32::try_from(line).unwrap_or(u32::MAX) },
+            place: FilePlace { file: file.cloned(), line: u32::try_from(line).unwrap_or(u32::MAX) },
             model: 0,
             attributes: node.attributes().map(|a| (prefixed(a.namespace(), a.name()), a.value().to_owned())).collect(),
             children: Vec::new(),
@@ -354,7 +354,7 @@ pub fn unread(root: &Node) -> Vec<Unread> {
 }
 
 fn collect(node: &Node, around: &str, found: &mut Vec<Unread>) {
-    let unread = |attribute, place: &Place| Unread {
+    let unread = |attribute, place: &FilePlace| Unread {
         element: node.name.clone(),
         around: around.to_owned(),
         attribute,

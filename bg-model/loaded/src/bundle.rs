@@ -14,7 +14,7 @@ use crate::text::{Counted, Fault, Graph, Wanted, load_file, on_a_large_stack};
 
 /// A file of a bundle.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-struct Part {
+struct BundledFile {
     /// Its path from the folder of the text.
     path: PathBuf,
     /// Which file it is: that of the first path that leads to it.
@@ -27,7 +27,7 @@ struct Part {
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bundle {
     /// The text itself, then the files that it uses.
-    parts: Vec<Part>,
+    parts: Vec<BundledFile>,
 }
 
 impl Bundle {
@@ -38,7 +38,7 @@ impl Bundle {
         let folder = path.parent().unwrap_or(Path::new(""));
         let name = PathBuf::from(path.file_name().unwrap_or_default());
         let known = RefCell::new(vec![first.file.clone()]);
-        let parts = RefCell::new(vec![Part { path: name.clone(), file: 0, text: first.text.clone() }]);
+        let parts = RefCell::new(vec![BundledFile { path: name.clone(), file: 0, text: first.text.clone() }]);
         let recorded = |path: &Path| {
             let opened = open(&folder.join(path))?;
             let mut known = known.borrow_mut();
@@ -46,7 +46,7 @@ impl Bundle {
                 known.push(opened.file.clone());
                 known.len() - 1
             });
-            parts.borrow_mut().push(Part { path: path.to_owned(), file, text: opened.text.clone() });
+            parts.borrow_mut().push(BundledFile { path: path.to_owned(), file, text: opened.text.clone() });
             Ok(opened)
         };
         drop(gather(&name, first, &recorded));
@@ -65,7 +65,7 @@ impl Bundle {
     /// # Errors
     /// As [`load`](crate::load).
     pub fn graphs(&self, wanted: Wanted<'_>) -> Result<Vec<Graph>, Vec<Fault>> {
-        let opened = |part: &Part| Opened { file: part.file.to_string().into(), text: part.text.clone() };
+        let opened = |part: &BundledFile| Opened { file: part.file.to_string().into(), text: part.text.clone() };
         let open = |path: &Path| {
             let part = self.parts.iter().skip(1).find(|part| part.path == path);
             part.map(opened).ok_or_else(|| format!("there is no {}", path.display()))

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use bg_workbench::Program;
 use bg_workbench::calls::{self, Asked, Fit, Number, Ran, Refused};
 use bg_workbench::optimize;
-use bg_workbench::sweep::folder::{Folder, Kind};
+use bg_workbench::sweep::folder::{Folder, ShardFile};
 use bg_workbench::sweep::{Share, shown};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -528,7 +528,7 @@ impl Model {
     /// The rows of a sweep's folder as far as it is done: one for each run, or with `trajectories` for each sample.
     #[pyo3(signature = (folder, *, trajectories=false))]
     fn read_sweep(&self, py: Python<'_>, folder: PathBuf, trajectories: bool) -> PyResult<Table> {
-        let kind = if trajectories { Kind::Trajectories } else { Kind::Runs };
+        let kind = if trajectories { ShardFile::Trajectories } else { ShardFile::Runs };
         let read = move |_: &Seen| -> Result<_, String> {
             let folder = Folder::open(&folder).map_err(|fault| fault.to_string())?;
             let table = shown::joined(&folder, kind).map_err(|fault| fault.to_string())?;

@@ -14,7 +14,7 @@ use quote::{format_ident, quote};
 
 use super::items::{identifier, placed};
 use super::members::{self, Member, Shape};
-use super::scopes::{Declared, Kind, Path, Scope, path};
+use super::scopes::{DeclarationKind, Declared, Path, Scope, path};
 use crate::fault::Fault;
 use crate::pipeline::Compiled;
 use crate::source::ast::{Graph, Item, Source, Spoken};
@@ -132,7 +132,7 @@ fn standing<'m>(graph: &Graph, models: &'m [Compiled]) -> Option<&'m Compiled> {
 fn kinds<'s>(scopes: impl Iterator<Item = &'s Scope>) -> TokenStream {
     let mut kinds: BTreeMap<&str, &[Member]> = BTreeMap::from([("Point", &members::POINT[..])]);
     for field in scopes.flat_map(|scope| &scope.fields) {
-        if let Kind::Thing(kind, members) = &field.kind {
+        if let DeclarationKind::Thing(kind, members) = &field.kind {
             kinds.insert(kind, members);
         }
     }
@@ -289,7 +289,7 @@ impl<'c> Meaning<'c> {
             let Some((around, next)) = next else { return (words, index) };
             let around = around.map(|part: &Declared| identifier(&part.word)).into_iter();
             // The ground's name is the language's.
-            let is_ground = matches!(next, At::Declared(Declared { kind: Kind::Frame("Ground", ..), .. }));
+            let is_ground = matches!(next, At::Declared(Declared { kind: DeclarationKind::Frame("Ground", ..), .. }));
             let word = if is_ground { identifier(text) } else { placed(text, *place) };
             words.extend(quote!(#(.#around)* .#word));
             at = Some(next);
@@ -328,7 +328,7 @@ impl<'c> Meaning<'c> {
             return Some((None, at));
         }
         scope.fields.iter().find_map(|field| match &field.kind {
-            Kind::Part { of, is_named: false } => Some((Some(field), named(&self.part(of)?.fields)?)),
+            DeclarationKind::Part { of, is_named: false } => Some((Some(field), named(&self.part(of)?.fields)?)),
             _ => None,
         })
     }
@@ -343,15 +343,18 @@ impl<'c> Meaning<'c> {
             }
             At::Quantity(_) => None,
             At::Declared(field) => match &field.kind {
-                Kind::Thing(_, members) => member(members),
-                Kind::Point => member(&members::POINT),
-                Kind::Frame(_, points, members) => {
+                DeclarationKind::Thing(_, members) => member(members),
+                DeclarationKind::Point => member(&members::POINT),
+                DeclarationKind::Frame(_, points, members) => {
                     points.iter().find(|point| point.word == text).map(At::Declared).or_else(|| member(members))
                 }
-                Kind::Part { of, .. } => {
+                DeclarationKind::Part { of, .. } => {
                     self.part(of)?.fields.iter().find(|field| field.word == text).map(At::Declared)
                 }
-                Kind::Parameter | Kind::Input | Kind::Value | Kind::Port => None,
+                DeclarationKind::Parameter
+                | DeclarationKind::Input
+                | DeclarationKind::Value
+                | DeclarationKind::Port => None,
             },
         }
     }
@@ -379,25 +382,25 @@ impl Fields<'_> {
     }
 
     fn field(&self, scope: &Scope, field: &Declared) -> TokenStream {
-        let is_elsewhere = matches!(field.kind, Kind::Parameter | Kind::Input)
+        let is_elsewhere = matches!(field.kind, DeclarationKind::Parameter | DeclarationKind::Input)
             && self.is_field_of(&vec![(field.word.clone(), field.place)]).is_some();
         let name = if is_elsewhere { identifier(&field.word) } else { placed(&field.word, field.place) };
         let docs = self.docs(field);
         let kind = match &field.kind {
-            Kind::Parameter => quote!(super::kinds::Parameter),
-            Kind::Input => quote!(super::kinds::Input),
-            Kind::Value => quote!(super::kinds::Value),
-            Kind::Port => quote!(super::kinds::Port),
-            Kind::Point => quote!(super::kinds::Point),
-            Kind::Thing(kind, _) => {
+            DeclarationKind::Parameter => quote!(super::kinds::Parameter),
+            DeclarationKind::Input => quote!(super::kinds::Input),
+            DeclarationKind::Value => quote!(super::kinds::Value),
+            DeclarationKind::Port => quote!(super::kinds::Port),
+            DeclarationKind::Point => quote!(super::kinds::Point),
+            DeclarationKind::Thing(kind, _) => {
                 let kind = identifier(kind);
                 quote!(super::kinds::#kind)
             }
-            Kind::Frame(kind, ..) => {
+            DeclarationKind::Frame(kind, ..) => {
                 let (module, kind) = (module(scope, field), identifier(kind));
                 quote!(#module::#kind)
             }
-            Kind::Part { of, .. } => match of.as_slice() {
+            DeclarationKind::Part { of, .. } => match of.as_slice() {
                 [(part, place)] => {
                     let part = placed(part, *place);
                     quote!(super::parts::#part)
@@ -410,7 +413,7 @@ impl Fields<'_> {
 
     /// The struct of something with points, in a module of its own so that its name can be short.
     fn frame(&self, scope: &Scope, field: &Declared) -> Option<TokenStream> {
-        let Kind::Frame(kind, points, members) = &field.kind else { return None };
+        let DeclarationKind::Frame(kind, points, members) = &field.kind else { return None };
         let (module, kind) = (module(scope, field), identifier(kind));
         let points = points.iter().map(|point| {
             let (name, docs) = (placed(&point.word, point.place), &point.docs);

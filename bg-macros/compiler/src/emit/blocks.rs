@@ -62,7 +62,7 @@ pub(super) struct Blocks {
 
 /// A group as it is written.
 #[derive(Default)]
-pub(super) struct Part<'a> {
+pub(super) struct Chunk<'a> {
     /// Its assignments; of a loop those that all iterations have in common.
     pub(super) assignments: Cow<'a, [Assignment]>,
     /// What the temporaries of a loop are in its first iteration: the targets, then what it reads. Of no loop: nothing.
@@ -107,11 +107,11 @@ impl Blocks {
     }
 
     /// A group as it is written.
-    pub(super) fn part<'a>(&self, group: &Group<'a>) -> Part<'a> {
+    pub(super) fn part<'a>(&self, group: &Group<'a>) -> Chunk<'a> {
         if group.period == group.assignments.len() { self.straight(group.assignments) } else { self.repeated(group) }
     }
 
-    fn straight<'a>(&self, assignments: &'a [Assignment]) -> Part<'a> {
+    fn straight<'a>(&self, assignments: &'a [Assignment]) -> Chunk<'a> {
         let reads = read_from_others(assignments)
             .into_iter()
             .map(|temporary| routine::definition(temporary, &self.place(temporary)))
@@ -119,15 +119,15 @@ impl Blocks {
         let first = self.handed(assignments).next();
         let writes =
             first.map(|first| store(&self.places[&first].to_string(), self.handed(assignments).map(temporary)));
-        Part { assignments: assignments.into(), reads, writes: writes.unwrap_or_default(), ..Part::default() }
+        Chunk { assignments: assignments.into(), reads, writes: writes.unwrap_or_default(), ..Chunk::default() }
     }
 
-    fn repeated<'a>(&self, group: &Group<'a>) -> Part<'a> {
+    fn repeated<'a>(&self, group: &Group<'a>) -> Chunk<'a> {
         let Piece { assignments, inputs } = repetition::piece(group.assignments, group.period);
         let targets = group.assignments[..group.period].iter().map(|assignment| assignment.target);
         let read = inputs.iter().map(|input| input.array.operand(input.entries[0]));
         let first = targets.clone().map(Operand::Temporary).chain(read).collect();
-        let mut part = Part { assignments: assignments.into(), first, ..Part::default() };
+        let mut part = Chunk { assignments: assignments.into(), first, ..Chunk::default() };
         for window in Window::of(self, &inputs, group.period) {
             let at = part.column(window.begins());
             part.reads += &window.definition(&at);
@@ -156,7 +156,7 @@ impl Blocks {
     }
 }
 
-impl Part<'_> {
+impl Chunk<'_> {
     /// The name of a place that each iteration has elsewhere.
     pub(super) fn column(&mut self, of_iterations: Vec<usize>) -> String {
         self.columns.push(of_iterations);

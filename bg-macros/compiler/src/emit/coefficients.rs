@@ -2,7 +2,7 @@
 //!
 //! In: steps that change. Out: their definitions.
 
-use super::blocks::Part;
+use super::blocks::Chunk;
 use super::pairs;
 use super::routine::{self, Names};
 use crate::expr::Function;
@@ -70,7 +70,7 @@ impl<'w, 'n> Writer<'w, 'n> {
     }
 
     /// The definitions of a long routine's part.
-    pub(super) fn part(&mut self, part: &mut Part) -> String {
+    pub(super) fn part(&mut self, part: &mut Chunk) -> String {
         let Some(iterations) = part.iterations() else { return self.singles(&part.assignments) };
         let changes = self.changes.of_loop(&part.first);
         let begins = Some(part.next_columns());

@@ -33,12 +33,12 @@ pub(super) struct Declared {
     pub place: Span,
     /// What an editor shows.
     pub docs: String,
-    pub kind: Kind,
+    pub kind: DeclarationKind,
 }
 
 /// What something is, by which a name that goes on after it is read.
 #[derive(Clone)]
-pub(super) enum Kind {
+pub(super) enum DeclarationKind {
     Parameter,
     Input,
     /// A value, an output.
@@ -105,7 +105,7 @@ impl Reading {
     }
 
     /// A name of this scope. What has been declared already, such as another element of an array, is mentioned.
-    fn declared(&mut self, name: &Name, kind: Kind, docs: String) {
+    fn declared(&mut self, name: &Name, kind: DeclarationKind, docs: String) {
         let Some((word, place)) = one_word(name) else { return };
         if self.scope.fields.iter().any(|known| known.word == word) {
             self.scope.mentions.push(vec![(word, place)]);
@@ -140,7 +140,7 @@ impl Reading {
         for (word, docs) in members::EVERYWHERE {
             if !self.scope.fields.iter().any(|known| known.word == word) {
                 let (word, docs) = (word.to_owned(), docs.to_owned());
-                self.scope.fields.push(Declared { word, place: Span::call_site(), docs, kind: Kind::Value });
+                self.scope.fields.push(Declared { word, place: Span::call_site(), docs, kind: DeclarationKind::Value });
             }
         }
     }
@@ -148,11 +148,11 @@ impl Reading {
     fn ground(&mut self, ground: &Ground) {
         let points = || ground.points.iter().map(point);
         let known = self.scope.fields.iter_mut().find(|known| known.word == GROUND);
-        if let Some(Declared { kind: Kind::Frame(_, known, _), .. }) = known {
+        if let Some(Declared { kind: DeclarationKind::Frame(_, known, _), .. }) = known {
             known.extend(points());
             return;
         }
-        let kind = Kind::Frame("Ground", points().collect(), Vec::new());
+        let kind = DeclarationKind::Frame("Ground", points().collect(), Vec::new());
         let (word, place, docs) = (GROUND.to_owned(), Span::call_site(), "The inertial frame.".to_owned());
         self.scope.fields.push(Declared { word, place, docs, kind });
     }
@@ -172,7 +172,7 @@ impl Reading {
         );
         if used.name.is_none() {
             let (place, docs) = (Span::call_site(), shown(&Item::Use(used.clone())));
-            let kind = Kind::Part { of, is_named: false };
+            let kind = DeclarationKind::Part { of, is_named: false };
             self.scope.fields.push(Declared { word: word.clone(), place, docs, kind });
         }
         used.arguments.iter().for_each(|argument| self.mentioned(&[&word], &argument.name));
@@ -227,25 +227,28 @@ fn one_word(name: &Name) -> Option<(String, Span)> {
 }
 
 /// What a statement declares; none where its names are looked at one by one.
-fn kind(item: &Item) -> Option<Kind> {
+fn kind(item: &Item) -> Option<DeclarationKind> {
     Some(match item {
-        Item::Parameter(_) => Kind::Parameter,
-        Item::Input(_) => Kind::Input,
-        Item::Table(_) => Kind::Thing("Table".to_owned(), members::of(item)),
-        Item::Let(_) | Item::State(_) | Item::Memory(_) | Item::Track(_) => Kind::Value,
-        Item::Every(_) => Kind::Thing("Sample".to_owned(), members::SAMPLE.to_vec()),
-        Item::Port(Port::Alias(..)) => Kind::Port,
+        Item::Parameter(_) => DeclarationKind::Parameter,
+        Item::Input(_) => DeclarationKind::Input,
+        Item::Table(_) => DeclarationKind::Thing("Table".to_owned(), members::of(item)),
+        Item::Let(_) | Item::State(_) | Item::Memory(_) | Item::Track(_) => DeclarationKind::Value,
+        Item::Every(_) => DeclarationKind::Thing("Sample".to_owned(), members::SAMPLE.to_vec()),
+        Item::Port(Port::Alias(..)) => DeclarationKind::Port,
         Item::Port(Port::Junction(junction)) => {
             let item = Item::Junction(junction.clone());
-            Kind::Thing(word(&item), members::of(&item))
+            DeclarationKind::Thing(word(&item), members::of(&item))
         }
-        Item::Body(body) => Kind::Frame("Body", body.points.iter().map(point).collect(), members::of(item)),
+        Item::Body(body) => DeclarationKind::Frame("Body", body.points.iter().map(point).collect(), members::of(item)),
         Item::Use(used) => {
             let name = &used.part.name;
-            Kind::Part { of: name.text.split("::").map(|word| (word.to_owned(), name.span)).collect(), is_named: true }
+            DeclarationKind::Part {
+                of: name.text.split("::").map(|word| (word.to_owned(), name.span)).collect(),
+                is_named: true,
+            }
         }
         Item::Ground(_) => return None,
-        _ => Kind::Thing(word(item), members::of(item)),
+        _ => DeclarationKind::Thing(word(item), members::of(item)),
     })
 }
 
@@ -264,12 +267,17 @@ fn word(item: &Item) -> String {
 
 fn point(point: &Point) -> Declared {
     let docs = format!("```text\n{point}\n```");
-    Declared { word: point.name.text.clone(), place: point.name.places()[0], docs, kind: Kind::Point }
+    Declared { word: point.name.text.clone(), place: point.name.places()[0], docs, kind: DeclarationKind::Point }
 }
 
 fn output(observation: &Observation) -> Option<Declared> {
     let (word, place) = one_word(observation.name.as_ref()?)?;
-    Some(Declared { word, place, docs: format!("Output.\n\n```text\n{observation}\n```"), kind: Kind::Value })
+    Some(Declared {
+        word,
+        place,
+        docs: format!("Output.\n\n```text\n{observation}\n```"),
+        kind: DeclarationKind::Value,
+    })
 }
 
 /// The statement, after what its author says of it.

@@ -12,7 +12,7 @@
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::blocks::{Blocks, Group, Part};
+use super::blocks::{Blocks, Chunk, Group};
 use super::coefficients::Writer;
 use super::pairs;
 use super::routine::{Names, assignments, parsed, parsed_each};
@@ -159,7 +159,7 @@ struct Long<'a> {
 
 impl<'a> Long<'a> {
     /// Groups as they are written, each with its definitions.
-    fn parts(&self, groups: &[Group<'a>], mut definitions: impl FnMut(&mut Part) -> String) -> Code<'a> {
+    fn parts(&self, groups: &[Group<'a>], mut definitions: impl FnMut(&mut Chunk) -> String) -> Code<'a> {
         let written = groups.iter().map(|group| {
             let mut part = self.blocks.part(group);
             let definitions = definitions(&mut part);
@@ -172,7 +172,7 @@ impl<'a> Long<'a> {
 /// What is gone through once or for each order, as text.
 enum Code<'a> {
     Whole(String),
-    Parts(Vec<(Part<'a>, String)>),
+    Parts(Vec<(Chunk<'a>, String)>),
 }
 
 /// The assignments of a routine as steps.
@@ -206,14 +206,14 @@ impl Pass {
     /// The functions of these parts, each with its definitions, and their calls in the body of `expand`.
     fn parts(
         self,
-        parts: Vec<(Part, String)>,
+        parts: Vec<(Chunk, String)>,
         array: &Option<TokenStream>,
         reads: &Reads,
     ) -> (TokenStream, TokenStream) {
         let (pass, arguments) = self.arguments(reads);
         let (declared, handed): (Vec<_>, Vec<_>) =
             arguments.into_iter().map(|[declared, handed]| (declared, handed)).unzip();
-        let function = |(index, (part, definitions)): (usize, (Part, String))| {
+        let function = |(index, (part, definitions)): (usize, (Chunk, String))| {
             let name = format_ident!("series_{pass}_part_{index}");
             let (read, block) = ((reads.by)(&part.assignments), parsed(&part.code(&definitions)));
             let function = quote! {

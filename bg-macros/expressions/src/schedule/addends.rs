@@ -30,7 +30,7 @@ struct Sums<'g, 's, 'p> {
 }
 
 /// A pair in one sum.
-struct Place {
+struct Occurrence {
     sum: usize,
     factor: Id,
     first: Value,
@@ -58,9 +58,9 @@ pub(super) fn share_addends(statics: &mut Statics, graph: &mut Graph, roots: &[V
 
 impl Elimination for Sums<'_, '_, '_> {
     type Pair = Pair;
-    type Place = Place;
+    type Occurrence = Occurrence;
 
-    fn places(&mut self, pair: Pair) -> Vec<Place> {
+    fn places(&mut self, pair: Pair) -> Vec<Occurrence> {
         let mut places = Vec::new();
         for sum in self.seen.lines(pair) {
             let terms = &self.all[sum].terms;
@@ -68,14 +68,14 @@ impl Elimination for Sums<'_, '_, '_> {
             let (Some(first), Some(second)) = (term(pair.0), term(pair.1)) else { continue };
             for (found, factor) in pairs(self.statics, first, second).into_iter().flatten() {
                 if found == pair {
-                    places.push(Place { sum, factor, first, second });
+                    places.push(Occurrence { sum, factor, first, second });
                 }
             }
         }
         places
     }
 
-    fn saving(&mut self, pair: Pair, places: &[Place]) -> i64 {
+    fn saving(&mut self, pair: Pair, places: &[Occurrence]) -> i64 {
         let Some(count) = i64::try_from(places.len()).ok().filter(|&count| count > 1) else { return 0 };
         let inner = [(pair.2, pair.0), (pair.3, pair.1)];
         let mut before = Vec::new();
@@ -104,7 +104,7 @@ impl Elimination for Sums<'_, '_, '_> {
         count - 1 + freed - i64::try_from(after.len()).unwrap_or(0)
     }
 
-    fn replace(&mut self, pair: Pair, places: &[Place]) -> Vec<Pair> {
+    fn replace(&mut self, pair: Pair, places: &[Occurrence]) -> Vec<Pair> {
         let terms = [Value { coefficient: pair.2, core: pair.0 }, Value { coefficient: pair.3, core: pair.1 }];
         let inner = self.graph.sum(self.statics, terms.to_vec());
         if let Core::Sum(terms) = self.graph.cores[inner.core].clone() {
@@ -166,7 +166,7 @@ impl Sums<'_, '_, '_> {
         }
     }
 
-    fn exchange(&mut self, place: &Place, mut new: Value, found: &mut Vec<Pair>) {
+    fn exchange(&mut self, place: &Occurrence, mut new: Value, found: &mut Vec<Pair>) {
         let terms = &mut self.all[place.sum].terms;
         terms.retain(|term| term.core != place.first.core && term.core != place.second.core);
         let at = terms.partition_point(|term| term.core < new.core);

@@ -87,9 +87,9 @@ fn operands<T: Copy>(of: &Operation<T>, read: &dyn Fn(T) -> Read, values: &[u32]
 }
 
 /// Which operations are one batch.
-type Kind = (Discriminant<Operation<()>>, bool, Option<Function>);
+type OperationKind = (Discriminant<Operation<()>>, bool, Option<Function>);
 
-fn kind<T: Copy>(of: &Operation<T>, read: &dyn Fn(T) -> Read) -> Kind {
+fn kind<T: Copy>(of: &Operation<T>, read: &dyn Fn(T) -> Read) -> OperationKind {
     let is_times = matches!(of, Operation::Multiply(a, b) if factor(*a, *b, read).is_some());
     let function = if let Operation::Call(function, _) = of { Some(*function) } else { None };
     (discriminant(&of.map(|_| ())), is_times, function)
@@ -107,8 +107,8 @@ fn order<T: Copy>(operations: &[Operation<T>], read: &dyn Fn(T) -> Read) -> Vec<
             }
         }
     }
-    let mut ready: Vec<(Kind, Vec<usize>)> = Vec::new();
-    let enter = |ready: &mut Vec<(Kind, Vec<usize>)>, index: usize| {
+    let mut ready: Vec<(OperationKind, Vec<usize>)> = Vec::new();
+    let enter = |ready: &mut Vec<(OperationKind, Vec<usize>)>, index: usize| {
         let kind = kind(&operations[index], read);
         match ready.iter_mut().find(|(known, _)| *known == kind) {
             Some((_, of)) => of.push(index),

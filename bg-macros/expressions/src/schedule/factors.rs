@@ -47,7 +47,7 @@ pub(super) fn share_factors(plan: &mut Plan) {
 impl Elimination for Products<'_> {
     type Pair = Pair;
     /// The product, and how many times the pair is in it.
-    type Place = (usize, u32);
+    type Occurrence = (usize, u32);
 
     fn places(&mut self, wanted: Pair) -> Vec<(usize, u32)> {
         let mut places = Vec::new();

@@ -17,20 +17,20 @@ use crate::expr::{Id, Symbol};
 
 /// Where a value is.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
-enum Place {
+enum Location {
     Static(Id),
     Symbol(Symbol),
     Step(u32),
 }
 
-impl Place {
+impl Location {
     fn step(self) -> Option<u32> {
         if let Self::Step(step) = self { Some(step) } else { None }
     }
 }
 
 /// One operation.
-type Step = Operation<Place>;
+type Step = Operation<Location>;
 
 /// The constants of a program in the order of their numbers.
 pub(super) type Constants = Store<Id>;
@@ -39,13 +39,13 @@ pub(super) type Constants = Store<Id>;
 pub(super) fn flatten(statics: &mut Statics, plan: &Plan, name: &str, constants: &mut Constants) -> Routine {
     let order = plan.post_order();
     let signs = Signs::new(plan, &order);
-    let places = vec![Place::Static(statics.one); plan.cells.len()];
+    let places = vec![Location::Static(statics.one); plan.cells.len()];
     let mut lowering = Lowering { statics, plan, signs, places, steps: Store::default(), depths: Vec::new() };
     for cell in order {
         let place = lowering.cell(cell);
         lowering.places[cell as usize] = place;
     }
-    let results: Vec<Place> = plan.roots.iter().map(|&root| lowering.wanted(root)).collect();
+    let results: Vec<Location> = plan.roots.iter().map(|&root| lowering.wanted(root)).collect();
     let steps = lowering.steps;
     number_steps(lowering.statics, &steps, &results, name, constants)
 }
@@ -54,17 +54,17 @@ struct Lowering<'l, 'p> {
     statics: &'l mut Statics<'p>,
     plan: &'l Plan,
     signs: Signs,
-    places: Vec<Place>,
+    places: Vec<Location>,
     steps: Store<Step>,
     depths: Vec<u32>,
 }
 
 impl Lowering<'_, '_> {
-    fn cell(&mut self, cell: u32) -> Place {
+    fn cell(&mut self, cell: u32) -> Location {
         let plan = self.plan;
         match &plan.cells[cell] {
-            Cell::Static(id) => Place::Static(*id),
-            Cell::Symbol(symbol) => Place::Symbol(*symbol),
+            Cell::Static(id) => Location::Static(*id),
+            Cell::Symbol(symbol) => Location::Symbol(*symbol),
             Cell::Sum(terms) => self.sum(cell, terms),
             Cell::Product(factors) => self.product(cell, factors),
             Cell::Call(function, arguments) => {
@@ -79,26 +79,26 @@ impl Lowering<'_, '_> {
     }
 
     /// The place of an operand with its true sign.
-    fn wanted(&mut self, operand: Signed) -> Place {
+    fn wanted(&mut self, operand: Signed) -> Location {
         let place = self.places[operand.cell as usize];
         if !self.signs.of(operand) {
             return place;
         }
         match place {
-            Place::Static(id) => Place::Static(self.statics.pool.neg(id)),
+            Location::Static(id) => Location::Static(self.statics.pool.neg(id)),
             _ => self.step(Step::Negate(place)),
         }
     }
 
-    fn sum(&mut self, cell: u32, terms: &[Signed]) -> Place {
+    fn sum(&mut self, cell: u32, terms: &[Signed]) -> Location {
         let turned = self.signs.negative[cell as usize];
-        let mut items: Vec<(bool, Place)> =
+        let mut items: Vec<(bool, Location)> =
             terms.iter().map(|&term| (self.signs.of(term) ^ turned, self.places[term.cell as usize])).collect();
         if items.iter().all(|item| item.0)
-            && let Some(item) = items.iter_mut().find(|item| matches!(item.1, Place::Static(_)))
-            && let Place::Static(id) = item.1
+            && let Some(item) = items.iter_mut().find(|item| matches!(item.1, Location::Static(_)))
+            && let Location::Static(id) = item.1
         {
-            *item = (false, Place::Static(self.statics.pool.neg(id)));
+            *item = (false, Location::Static(self.statics.pool.neg(id)));
         }
         let (negative, place) = self.combine(items, |left, right| match (left.0, right.0) {
             (false, true) => (false, Step::Subtract(left.1, right.1)),
@@ -109,7 +109,7 @@ impl Lowering<'_, '_> {
         place
     }
 
-    fn product(&mut self, cell: u32, factors: &[(u32, i32)]) -> Place {
+    fn product(&mut self, cell: u32, factors: &[(u32, i32)]) -> Location {
         let mut negative = self.signs.negative[cell as usize];
         let (mut above, mut below) = (Vec::new(), Vec::new());
         for &(factor, exponent) in factors {
@@ -118,15 +118,16 @@ impl Lowering<'_, '_> {
             side.extend((0..exponent.unsigned_abs()).map(|_| (false, self.places[factor as usize])));
         }
         if negative
-            && let Some(item) = above.iter_mut().find(|item: &&mut (bool, Place)| matches!(item.1, Place::Static(_)))
-            && let Place::Static(id) = item.1
+            && let Some(item) =
+                above.iter_mut().find(|item: &&mut (bool, Location)| matches!(item.1, Location::Static(_)))
+            && let Location::Static(id) = item.1
         {
-            item.1 = Place::Static(self.statics.pool.neg(id));
+            item.1 = Location::Static(self.statics.pool.neg(id));
         }
         if above.is_empty() {
-            above.push((false, Place::Static(self.statics.one)));
+            above.push((false, Location::Static(self.statics.one)));
         }
-        let multiply = |left: (bool, Place), right: (bool, Place)| (false, Step::Multiply(left.1, right.1));
+        let multiply = |left: (bool, Location), right: (bool, Location)| (false, Step::Multiply(left.1, right.1));
         let (_, dividend) = self.combine(above, multiply);
         if below.is_empty() {
             return dividend;
@@ -138,16 +139,16 @@ impl Lowering<'_, '_> {
     /// Combines items in pairs, the two that are ready first.
     fn combine(
         &mut self,
-        items: Vec<(bool, Place)>,
-        join: impl Fn((bool, Place), (bool, Place)) -> (bool, Step),
-    ) -> (bool, Place) {
+        items: Vec<(bool, Location)>,
+        join: impl Fn((bool, Location), (bool, Location)) -> (bool, Step),
+    ) -> (bool, Location) {
         let mut queue = BinaryHeap::with_capacity(items.len());
         for item in items {
             queue.push(Reverse((self.depth(item.1), queue.len(), item)));
         }
         let mut next = queue.len();
         loop {
-            let Some(Reverse((_, _, first))) = queue.pop() else { return (false, Place::Static(self.statics.one)) };
+            let Some(Reverse((_, _, first))) = queue.pop() else { return (false, Location::Static(self.statics.one)) };
             let Some(Reverse((_, _, second))) = queue.pop() else { return first };
             let (negative, step) = join(first, second);
             let place = self.step(step);
@@ -156,11 +157,11 @@ impl Lowering<'_, '_> {
         }
     }
 
-    fn depth(&self, place: Place) -> u32 {
+    fn depth(&self, place: Location) -> u32 {
         place.step().map_or(0, |step| self.depths[step as usize])
     }
 
-    fn step(&mut self, step: Step) -> Place {
+    fn step(&mut self, step: Step) -> Location {
         let key = match step {
             Step::Add(left, right) => Step::Add(left.min(right), left.max(right)),
             Step::Multiply(left, right) => Step::Multiply(left.min(right), left.max(right)),
@@ -171,7 +172,7 @@ impl Lowering<'_, '_> {
         if self.depths.len() < self.steps.len() {
             self.depths.push(depth + 1);
         }
-        Place::Step(index)
+        Location::Step(index)
     }
 }
 
@@ -179,14 +180,14 @@ impl Lowering<'_, '_> {
 fn number_steps(
     statics: &Statics,
     steps: &Store<Step>,
-    results: &[Place],
+    results: &[Location],
     name: &str,
     constants: &mut Constants,
 ) -> Routine {
     let mut targets: Vec<Option<u32>> = vec![None; steps.len()];
     let mut assignments = Vec::new();
-    let order = steps.post_order(results.iter().copied().filter_map(Place::step), |step, visit| {
-        step.operands().into_iter().filter_map(Place::step).for_each(visit);
+    let order = steps.post_order(results.iter().copied().filter_map(Location::step), |step, visit| {
+        step.operands().into_iter().filter_map(Location::step).for_each(visit);
     });
     for step in order {
         let operation = steps[step].map(|place| operand(statics, constants, &targets, place));
@@ -199,12 +200,12 @@ fn number_steps(
     Routine { name: name.to_owned(), assignments, results, counts }
 }
 
-fn operand(statics: &Statics, constants: &mut Constants, targets: &[Option<u32>], place: Place) -> Operand {
+fn operand(statics: &Statics, constants: &mut Constants, targets: &[Option<u32>], place: Location) -> Operand {
     match place {
-        Place::Static(id) => {
+        Location::Static(id) => {
             statics.pool.as_number(id).map_or_else(|| Operand::Constant(constants.intern(id)), Operand::Number)
         }
-        Place::Symbol(symbol) => Operand::Symbol(symbol),
-        Place::Step(step) => Operand::Temporary(targets[step as usize].expect("operands are assigned first")),
+        Location::Symbol(symbol) => Operand::Symbol(symbol),
+        Location::Step(step) => Operand::Temporary(targets[step as usize].expect("operands are assigned first")),
     }
 }

@@ -20,16 +20,16 @@ pub(super) trait Elimination {
     /// Two terms or two factors.
     type Pair: Copy + Ord + Hash;
     /// A pair in one line.
-    type Place;
+    type Occurrence;
 
     /// Where the pair still is.
-    fn places(&mut self, pair: Self::Pair) -> Vec<Self::Place>;
+    fn places(&mut self, pair: Self::Pair) -> Vec<Self::Occurrence>;
 
     /// The operations that a line of this pair alone saves.
-    fn saving(&mut self, pair: Self::Pair, places: &[Self::Place]) -> i64;
+    fn saving(&mut self, pair: Self::Pair, places: &[Self::Occurrence]) -> i64;
 
     /// Replaces the pair by a line of its own. Returns the pairs that this makes.
-    fn replace(&mut self, pair: Self::Pair, places: &[Self::Place]) -> Vec<Self::Pair>;
+    fn replace(&mut self, pair: Self::Pair, places: &[Self::Occurrence]) -> Vec<Self::Pair>;
 }
 
 /// Eliminates pairs until none saves an operation.

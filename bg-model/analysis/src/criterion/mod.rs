@@ -129,7 +129,7 @@ fn shown(unit: &str) -> &str {
 
 /// Which number of a signal.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Kind {
+pub enum CriterionKind {
     /// Its largest value.
     Max,
     /// Its least value.
@@ -156,7 +156,7 @@ pub enum Kind {
     Crossings(f64),
 }
 
-impl Kind {
+impl CriterionKind {
     /// Whether it is known from the least and the largest value.
     pub const fn is_of_peaks(self) -> bool {
         matches!(self, Self::Max | Self::Min | Self::Range | Self::TimeOfMax | Self::TimeOfMin)
@@ -177,7 +177,7 @@ impl Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
     /// Which number.
-    pub kind: Kind,
+    pub kind: CriterionKind,
     /// The signal.
     signal: Node,
     /// From when to when it is looked at, s; the whole run if none is given.
@@ -362,9 +362,11 @@ impl Criteria {
                 let measure = &self.measures[*place];
                 let signal = unit(&measure.signal, &|leaf| self.unit_of_leaf(leaf)).ok()?;
                 match measure.kind {
-                    Kind::TimeOfMax | Kind::TimeOfMin => of("s"),
-                    Kind::Crossings(_) => Some(Shown::number()),
-                    Kind::Integral => signal.map(|unit| unit.times(&Shown::of("s").unwrap_or_else(Shown::number))),
+                    CriterionKind::TimeOfMax | CriterionKind::TimeOfMin => of("s"),
+                    CriterionKind::Crossings(_) => Some(Shown::number()),
+                    CriterionKind::Integral => {
+                        signal.map(|unit| unit.times(&Shown::of("s").unwrap_or_else(Shown::number)))
+                    }
                     _ => signal,
                 }
             }
@@ -423,9 +425,9 @@ impl Criteria {
         criterion.node.each(&mut |node| {
             if let Node::Measure(place) = node {
                 found = found.or(match self.measures[*place].kind {
-                    Kind::TimeOfMax => Some("time_of_max"),
-                    Kind::TimeOfMin => Some("time_of_min"),
-                    Kind::Crossings(_) => Some("crossings"),
+                    CriterionKind::TimeOfMax => Some("time_of_max"),
+                    CriterionKind::TimeOfMin => Some("time_of_min"),
+                    CriterionKind::Crossings(_) => Some("crossings"),
                     _ => None,
                 });
             }
@@ -445,8 +447,8 @@ fn in_unit(node: Node, unit: &Shown) -> Node {
 impl Parts for &[Measure] {
     fn of(&self, measure: usize) -> Option<(bool, usize)> {
         match self[measure].kind {
-            Kind::Max => Some((true, of_run::PARTS)),
-            Kind::Min => Some((false, of_run::PARTS)),
+            CriterionKind::Max => Some((true, of_run::PARTS)),
+            CriterionKind::Min => Some((false, of_run::PARTS)),
             _ => None,
         }
     }

@@ -16,7 +16,7 @@ use bg_model::simulation::{Part, PeakMonitor, Peaks, Samples, Watched};
 use bg_units::Unit;
 
 use super::tree::{Leaves, Node};
-use super::{Criteria, Kind, Known, in_si, size};
+use super::{Criteria, CriterionKind, Known, in_si, size};
 
 /// In how many parts of a window largest and least values are known each.
 pub const PARTS: usize = 12;
@@ -93,7 +93,7 @@ impl Look {
         for measure in &criteria.measures {
             let [from, to] = measure.window.unwrap_or([0.0, t_end]);
             let to = if to.is_finite() { to } else { t_end };
-            let at = if let Kind::At(t) = measure.kind { t } else { from };
+            let at = if let CriterionKind::At(t) = measure.kind { t } else { from };
             if let Some(&t) = [from, to, at].iter().find(|t| !(0.0..=t_end).contains(*t)) {
                 return Err(Outside { t, t_end });
             }
@@ -180,11 +180,11 @@ impl Look {
         let measures = measures.map(|((measure, extremes), window)| {
             let whole = extremes.as_ref().map(|of| of.whole);
             match measure.kind {
-                Kind::Max => whole.map_or(f64::NAN, |of| of.largest.value),
-                Kind::Min => whole.map_or(f64::NAN, |of| of.least.value),
-                Kind::Range => whole.map_or(f64::NAN, |of| of.largest.value - of.least.value),
-                Kind::TimeOfMax => whole.map_or(f64::NAN, |of| of.largest.t),
-                Kind::TimeOfMin => whole.map_or(f64::NAN, |of| of.least.t),
+                CriterionKind::Max => whole.map_or(f64::NAN, |of| of.largest.value),
+                CriterionKind::Min => whole.map_or(f64::NAN, |of| of.least.value),
+                CriterionKind::Range => whole.map_or(f64::NAN, |of| of.largest.value - of.least.value),
+                CriterionKind::TimeOfMax => whole.map_or(f64::NAN, |of| of.largest.t),
+                CriterionKind::TimeOfMin => whole.map_or(f64::NAN, |of| of.least.t),
                 kind => kind.of_rows(&rows, &measure.signal, &parameters, *window),
             }
         });
@@ -193,8 +193,8 @@ impl Look {
             let Some(Extremes { whole, parts }) = extremes else { return Vec::new() };
             let of = |part: &Option<Peaks>| part.unwrap_or(*whole);
             match measure.kind {
-                Kind::Max => parts.iter().map(|part| of(part).largest.value).collect(),
-                Kind::Min => parts.iter().map(|part| of(part).least.value).collect(),
+                CriterionKind::Max => parts.iter().map(|part| of(part).largest.value).collect(),
+                CriterionKind::Min => parts.iter().map(|part| of(part).least.value).collect(),
                 _ => Vec::new(),
             }
         });
@@ -288,7 +288,7 @@ impl<S: Scalar> Rows<S> {
     }
 }
 
-impl Kind {
+impl CriterionKind {
     /// This number of a signal that is known at samples, over a window.
     fn of_rows<S: Scalar>(self, rows: &Rows<S>, node: &Node, parameters: &[S], [from, to]: [f64; 2]) -> S {
         let inside: Vec<usize> = (0..rows.t.len()).filter(|&row| (from..=to).contains(&rows.t[row])).collect();
@@ -371,14 +371,14 @@ impl Sloped<'_> {
             let of_whole = |is_largest: bool| extremes.map(|of| peak(place, &of.whole, is_largest));
             let none = Gradient::from_f64(f64::NAN);
             measures.push(match measure.kind {
-                Kind::Max => of_whole(true).unwrap_or(none),
-                Kind::Min => of_whole(false).unwrap_or(none),
-                Kind::Range => of_whole(true).zip(of_whole(false)).map_or(none, |(high, low)| high - low),
-                Kind::TimeOfMax | Kind::TimeOfMin | Kind::Crossings(_) => none,
+                CriterionKind::Max => of_whole(true).unwrap_or(none),
+                CriterionKind::Min => of_whole(false).unwrap_or(none),
+                CriterionKind::Range => of_whole(true).zip(of_whole(false)).map_or(none, |(high, low)| high - low),
+                CriterionKind::TimeOfMax | CriterionKind::TimeOfMin | CriterionKind::Crossings(_) => none,
                 kind => kind.of_rows(&rows, &measure.signal, &parameters, windows[place]),
             });
-            let is_largest = measure.kind == Kind::Max;
-            let parts = extremes.filter(|_| is_largest || measure.kind == Kind::Min);
+            let is_largest = measure.kind == CriterionKind::Max;
+            let parts = extremes.filter(|_| is_largest || measure.kind == CriterionKind::Min);
             pieces.push(parts.map_or_else(Vec::new, |of| {
                 of.parts.iter().map(|part| peak(place, part.as_ref().unwrap_or(&of.whole), is_largest)).collect()
             }));

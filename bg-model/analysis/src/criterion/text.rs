@@ -7,7 +7,7 @@ use bg_model::description::Description;
 
 use super::tree::{Node, One, Two};
 use super::units::Shown;
-use super::{CriterionError, Kind, Measure};
+use super::{CriterionError, CriterionKind, Measure};
 
 /// How two sides are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,19 +32,19 @@ const SIGNS: [&str; 17] =
     ["..", "<=", ">=", "==", "<", ">", "=", "+", "-", "*", "/", "^", "(", ")", ",", "|", "\u{2264}"];
 
 /// The numbers that a run gives of a signal.
-const MEASURES: [(&str, Kind); 12] = [
-    ("max", Kind::Max),
-    ("min", Kind::Min),
-    ("range", Kind::Range),
-    ("mean", Kind::Mean),
-    ("rms", Kind::Rms),
-    ("deviation", Kind::Deviation),
-    ("integral", Kind::Integral),
-    ("final", Kind::Final),
-    ("at", Kind::At(0.0)),
-    ("time_of_max", Kind::TimeOfMax),
-    ("time_of_min", Kind::TimeOfMin),
-    ("crossings", Kind::Crossings(0.0)),
+const MEASURES: [(&str, CriterionKind); 12] = [
+    ("max", CriterionKind::Max),
+    ("min", CriterionKind::Min),
+    ("range", CriterionKind::Range),
+    ("mean", CriterionKind::Mean),
+    ("rms", CriterionKind::Rms),
+    ("deviation", CriterionKind::Deviation),
+    ("integral", CriterionKind::Integral),
+    ("final", CriterionKind::Final),
+    ("at", CriterionKind::At(0.0)),
+    ("time_of_max", CriterionKind::TimeOfMax),
+    ("time_of_min", CriterionKind::TimeOfMin),
+    ("crossings", CriterionKind::Crossings(0.0)),
 ];
 
 /// Functions of one number.
@@ -361,7 +361,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A measure of a signal, over a window of time if one is given; `max` and `min` of several are the one of these.
-    fn measure(&mut self, name: &str, kind: Kind) -> Found<Node> {
+    fn measure(&mut self, name: &str, kind: CriterionKind) -> Found<Node> {
         let mut several = Vec::new();
         let mut window = None;
         if self.takes("(") {
@@ -381,10 +381,12 @@ impl<'a> Reader<'a> {
         let wrong = || CriterionError::Arguments { name: name.to_owned() };
         let number = |node: Option<Node>| node.and_then(|node| node.constant()).ok_or_else(wrong);
         let (kind, count) = match kind {
-            Kind::Max if several.len() > 1 && window.is_none() => return Ok(Node::Largest(several)),
-            Kind::Min if several.len() > 1 && window.is_none() => return Ok(Node::Least(several)),
-            Kind::At(_) => (Kind::At(number(several.get(1).cloned())?), 2),
-            Kind::Crossings(_) if several.len() > 1 => (Kind::Crossings(number(several.get(1).cloned())?), 2),
+            CriterionKind::Max if several.len() > 1 && window.is_none() => return Ok(Node::Largest(several)),
+            CriterionKind::Min if several.len() > 1 && window.is_none() => return Ok(Node::Least(several)),
+            CriterionKind::At(_) => (CriterionKind::At(number(several.get(1).cloned())?), 2),
+            CriterionKind::Crossings(_) if several.len() > 1 => {
+                (CriterionKind::Crossings(number(several.get(1).cloned())?), 2)
+            }
             kind => (kind, 1),
         };
         if several.len() != count {

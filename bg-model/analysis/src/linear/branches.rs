@@ -10,7 +10,7 @@
 
 use bg_model::nalgebra::Complex;
 
-use super::modes::{Mode, Part};
+use super::modes::{Mode, Participation};
 
 /// A mode over a parameter.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,10 +33,11 @@ fn eigenvalue(mode: &Mode) -> Complex<f64> {
 }
 
 /// How much alike two shapes are, 0 to 1.
-fn likeness(a: &[Part], b: &[Part]) -> f64 {
-    let weight = |part: &Part| Complex::from_polar(part.share.max(0.0).sqrt(), part.phase);
-    let product =
-        |a: &[Part], b: &[Part]| a.iter().zip(b).map(|(a, b)| weight(a).conj() * weight(b)).sum::<Complex<f64>>();
+fn likeness(a: &[Participation], b: &[Participation]) -> f64 {
+    let weight = |part: &Participation| Complex::from_polar(part.share.max(0.0).sqrt(), part.phase);
+    let product = |a: &[Participation], b: &[Participation]| {
+        a.iter().zip(b).map(|(a, b)| weight(a).conj() * weight(b)).sum::<Complex<f64>>()
+    };
     let [own, other] = [product(a, a).norm(), product(b, b).norm()];
     if own * other > 0.0 { product(a, b).norm_sqr() / (own * other) } else { 0.0 }
 }
@@ -159,7 +160,8 @@ mod tests {
 
     /// An undamped mode of this frequency, rad/s, in which both coordinates take part so much.
     fn mode(frequency: f64, shares: [f64; 2]) -> Mode {
-        let part = |share| Part { name: String::new(), unit: String::new(), share, magnitude: 1.0, phase: 0.0 };
+        let part =
+            |share| Participation { name: String::new(), unit: String::new(), share, magnitude: 1.0, phase: 0.0 };
         Mode {
             real: 0.0,
             imaginary: frequency,

@@ -52,7 +52,7 @@ pub use eigen::{EigenPair, eigen_pairs};
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use error::LinearError;
 pub use manifold::LeftOut;
-pub use modes::{Mode, Part};
+pub use modes::{Mode, Participation};
 pub use response::{Response, logarithmic};
 pub use state_space::{Named, PointState, StateSpace, linearise, linearise_at};
 pub use text::{responses_csv, responses_json};

@@ -26,14 +26,14 @@ pub struct Mode {
     /// grows. None of the eigenvalue 0.
     pub damping: Option<f64>,
     /// What each coordinate does, in the order of the states.
-    pub shape: Vec<Part>,
+    pub shape: Vec<Participation>,
     /// The bodies, joints and elements that take part most, in words.
     pub words: String,
 }
 
 /// What a coordinate does in a mode.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Part {
+pub struct Participation {
     /// The coordinate's name.
     pub name: String,
     /// Its unit.
@@ -66,7 +66,7 @@ fn mode(pair: &EigenPair, coordinates: &[Coordinate]) -> Mode {
     let unit = most.map(|most| pair.right[most]).filter(|unit| unit.norm() > 0.0).unwrap_or(Complex::new(1.0, 0.0));
     let part = |k: usize| {
         let component = pair.right[k] / unit;
-        Part {
+        Participation {
             name: coordinates[k].name.clone(),
             unit: coordinates[k].unit.to_owned(),
             share: pair.shares[k],
@@ -74,7 +74,7 @@ fn mode(pair: &EigenPair, coordinates: &[Coordinate]) -> Mode {
             phase: if component.norm() > 0.0 { component.arg() } else { 0.0 },
         }
     };
-    let shape: Vec<Part> = (0..coordinates.len()).map(part).collect();
+    let shape: Vec<Participation> = (0..coordinates.len()).map(part).collect();
     Mode {
         real: pair.value.re,
         imaginary: pair.value.im,
@@ -88,7 +88,7 @@ fn mode(pair: &EigenPair, coordinates: &[Coordinate]) -> Mode {
 
 /// What takes part by 5 % or more, the most first: `rod 100 %: position_x 1 m, rotation_z 3.33 rad`. With `places` the
 /// momenta speak only of what has nothing else.
-fn words(shape: &[Part], coordinates: &[Coordinate], places: bool) -> String {
+fn words(shape: &[Participation], coordinates: &[Coordinate], places: bool) -> String {
     let mut owners: Vec<(&str, Vec<usize>)> = Vec::new();
     for (k, part) in shape.iter().enumerate() {
         let owner = owner(&part.name).0;
@@ -115,7 +115,7 @@ fn words(shape: &[Part], coordinates: &[Coordinate], places: bool) -> String {
 }
 
 /// `rotation_z 0.33 rad at 180 deg`.
-fn phrase(part: &Part) -> String {
+fn phrase(part: &Participation) -> String {
     let degrees = part.phase.to_degrees();
     let at = if degrees.abs() < 0.5 || part.magnitude == 0.0 { String::new() } else { format!(" at {degrees:.0} deg") };
     format!("{} {} {}{at}", owner(&part.name).1, significant(part.magnitude), part.unit)

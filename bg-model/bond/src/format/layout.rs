@@ -4,7 +4,7 @@ use proc_macro2::Delimiter;
 
 use super::spaces::spaced;
 use super::structure::Structure;
-use super::tokens::{Kind, Token};
+use super::tokens::{Token, TokenClass};
 
 /// Blanks of an indentation.
 const INDENT: usize = 4;
@@ -35,14 +35,17 @@ impl<'t> Layout<'t> {
         let structure = Structure::of(tokens);
         let (mut is_open, mut is_split) = (vec![false; tokens.len()], vec![false; tokens.len()]);
         for (place, token) in tokens.iter().enumerate() {
-            if token.kind == Kind::Open(Delimiter::Brace) && structure.is_declaration(place) {
+            if token.kind == TokenClass::Open(Delimiter::Brace) && structure.is_declaration(place) {
                 let is_empty = structure.partner[place] == place + 1;
                 (is_open[place], is_split[place]) = (!is_empty, true);
             }
             // A block has lines where a line ends in it that is none of a block inside.
-            let around =
-                if let Kind::Close(_) = token.kind { Some(structure.partner[place]) } else { structure.around[place] };
-            if let Some(open) = around.filter(|open| tokens[*open].kind == Kind::Open(Delimiter::Brace)) {
+            let around = if let TokenClass::Close(_) = token.kind {
+                Some(structure.partner[place])
+            } else {
+                structure.around[place]
+            };
+            if let Some(open) = around.filter(|open| tokens[*open].kind == TokenClass::Open(Delimiter::Brace)) {
                 is_open[open] |= place > 0 && (has_line(tokens, place) || tokens[place - 1].ends_line());
             }
         }
@@ -57,7 +60,7 @@ impl<'t> Layout<'t> {
             for (line, _) in text.lines().enumerate().filter(|(_, text)| text.chars().count() > WIDTH) {
                 let [start, end] = [line, line + 1].map(|line| line_of.partition_point(|of| *of < line));
                 let block = (start..end).find(|&place| {
-                    let is_brace = self.tokens[place].kind == Kind::Open(Delimiter::Brace);
+                    let is_brace = self.tokens[place].kind == TokenClass::Open(Delimiter::Brace);
                     let close = self.structure.partner[place];
                     is_brace && close > place + 1 && close < end && !self.is_open[place]
                 });
@@ -78,7 +81,7 @@ impl<'t> Layout<'t> {
         // The indentations of the lines in which the brackets around were opened.
         let mut around: Vec<usize> = Vec::new();
         for (place, token) in self.tokens.iter().enumerate() {
-            let opened = if let Kind::Close(_) = token.kind { around.pop() } else { None };
+            let opened = if let TokenClass::Close(_) = token.kind { around.pop() } else { None };
             match self.between(place) {
                 Between::Nothing => {}
                 Between::Blank => text.push(' '),
@@ -93,7 +96,7 @@ impl<'t> Layout<'t> {
             text.push_str(token.text);
             line_of.push(line);
             line += token.text.matches('\n').count();
-            if let Kind::Open(_) = token.kind {
+            if let TokenClass::Open(_) = token.kind {
                 around.push(indent);
             }
         }
@@ -106,11 +109,11 @@ impl<'t> Layout<'t> {
     /// The indentation of a line that begins with this token, in brackets of a line with the indentation `around`.
     fn indent(&self, place: usize, around: Option<usize>) -> usize {
         let block = around.map_or(0, |indent| indent + INDENT);
-        let is_in_brackets =
-            self.structure.around[place].is_some_and(|open| self.tokens[open].kind != Kind::Open(Delimiter::Brace));
+        let is_in_brackets = self.structure.around[place]
+            .is_some_and(|open| self.tokens[open].kind != TokenClass::Open(Delimiter::Brace));
         let goes_on = !self.structure.begins[place] && !is_in_brackets;
         // Documentation is in front of what it is about.
-        let is_documented = place > 0 && self.tokens[place - 1].kind == Kind::Documentation;
+        let is_documented = place > 0 && self.tokens[place - 1].kind == TokenClass::Documentation;
         if goes_on && !is_documented { block + INDENT } else { block }
     }
 
@@ -118,7 +121,7 @@ impl<'t> Layout<'t> {
     fn between(&self, place: usize) -> Between {
         let Some(last) = place.checked_sub(1) else { return Between::Nothing };
         let (before, token) = (&self.tokens[last], &self.tokens[place]);
-        let is_edge = matches!(before.kind, Kind::Open(_)) || matches!(token.kind, Kind::Close(_));
+        let is_edge = matches!(before.kind, TokenClass::Open(_)) || matches!(token.kind, TokenClass::Close(_));
         let line = if token.lines > 1 && !is_edge { Between::EmptyLine } else { Between::Line };
         if before.ends_line() {
             return line;
@@ -135,7 +138,8 @@ impl<'t> Layout<'t> {
     /// Whether a token is the first or the last one of an open block.
     fn ends_block_line(&self, place: usize) -> bool {
         let is_first = self.is_open[place - 1] && !self.tokens[place].is_comment();
-        let is_last = matches!(self.tokens[place].kind, Kind::Close(_)) && self.is_open[self.structure.partner[place]];
+        let is_last =
+            matches!(self.tokens[place].kind, TokenClass::Close(_)) && self.is_open[self.structure.partner[place]];
         is_first || is_last
     }
 
@@ -150,6 +154,6 @@ impl<'t> Layout<'t> {
 fn has_line(tokens: &[Token], place: usize) -> bool {
     let token = &tokens[place];
     let is_of_line_before =
-        token.is(";") || token.is(",") || token.is("else") || token.kind == Kind::Open(Delimiter::Brace);
+        token.is(";") || token.is(",") || token.is("else") || token.kind == TokenClass::Open(Delimiter::Brace);
     token.lines > 0 && !is_of_line_before
 }

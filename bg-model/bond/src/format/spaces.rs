@@ -3,7 +3,7 @@
 use proc_macro2::Delimiter::{Brace, Bracket, Parenthesis};
 
 use super::structure::Structure;
-use super::tokens::{Kind, Token};
+use super::tokens::{Token, TokenClass};
 
 /// Marks with a blank on both sides.
 const SPACED: [&str; 17] =
@@ -17,24 +17,24 @@ pub fn spaced(tokens: &[Token], structure: &Structure, b: usize) -> bool {
     let is_tight = |place: usize| {
         let token = &tokens[place];
         let is_of_unit = structure.is_unit[place] && (token.is("*") || token.is("/"));
-        token.kind == Kind::Mark && (TIGHT.contains(&token.text) || is_of_unit)
+        token.kind == TokenClass::Mark && (TIGHT.contains(&token.text) || is_of_unit)
     };
     match (before.kind, after.kind) {
-        (Kind::Open(Brace), kind) => kind != Kind::Close(Brace),
-        (Kind::Open(_), _) => false,
-        (_, Kind::Close(kind)) => kind == Brace,
+        (TokenClass::Open(Brace), kind) => kind != TokenClass::Close(Brace),
+        (TokenClass::Open(_), _) => false,
+        (_, TokenClass::Close(kind)) => kind == Brace,
         _ if after.is(";") || after.is(",") => false,
         _ if before.is(";") || before.is(",") || before.is_comment() || after.is_comment() => true,
         _ if is_tight(b - 1) || is_tight(b) || after.is(":") => false,
         _ if before.is(":") => true,
         _ if is_sign(tokens, b - 1) => false,
-        (Kind::Mark, _) if SPACED.contains(&before.text) => true,
-        (_, Kind::Mark) if SPACED.contains(&after.text) => true,
-        (Kind::Mark, _) | (_, Kind::Mark) => after.is_apart,
+        (TokenClass::Mark, _) if SPACED.contains(&before.text) => true,
+        (_, TokenClass::Mark) if SPACED.contains(&after.text) => true,
+        (TokenClass::Mark, _) | (_, TokenClass::Mark) => after.is_apart,
         // The ends of a joint or spring; else a call, or a value after its clause.
-        (_, Kind::Open(Parenthesis)) => has(tokens, structure, b, "->") || (after.is_apart && !before.is("pub")),
+        (_, TokenClass::Open(Parenthesis)) => has(tokens, structure, b, "->") || (after.is_apart && !before.is("pub")),
         // A vector, or an index.
-        (Kind::Word | Kind::Close(Bracket), Kind::Open(Bracket)) => has(tokens, structure, b, ","),
+        (TokenClass::Word | TokenClass::Close(Bracket), TokenClass::Open(Bracket)) => has(tokens, structure, b, ","),
         _ => true,
     }
 }
@@ -47,8 +47,8 @@ fn is_sign(tokens: &[Token], place: usize) -> bool {
     }
     let mut before = tokens[..place].iter().rev().filter(|token| !token.is_comment());
     match before.next().map(|token| token.kind) {
-        None | Some(Kind::Mark | Kind::Open(_)) => true,
-        Some(Kind::Word) => {
+        None | Some(TokenClass::Mark | TokenClass::Open(_)) => true,
+        Some(TokenClass::Word) => {
             let is_path = before.next().is_some_and(|token| token.is("."));
             let next = &tokens[place + 1];
             !is_path && tokens[place].is_apart && !next.is_apart

@@ -5,7 +5,7 @@
 use bg_compiler::source::syntax::BLOCKS;
 use proc_macro2::Delimiter;
 
-use super::tokens::{Kind, Token};
+use super::tokens::{Token, TokenClass};
 
 /// The blocks whose entries `,` separates.
 const LISTS: [&str; 4] = ["observe", "tune", "without", "rigid"];
@@ -42,7 +42,7 @@ impl Block<'_> {
 
     /// Whether entries begin in it: it is the text, or has braces.
     fn has_entries(&self, tokens: &[Token]) -> bool {
-        self.open.is_none_or(|open| tokens[open].kind == Kind::Open(Delimiter::Brace))
+        self.open.is_none_or(|open| tokens[open].kind == TokenClass::Open(Delimiter::Brace))
     }
 }
 
@@ -51,7 +51,7 @@ impl Structure {
         let mut structure = Self { partner: (0..tokens.len()).collect(), ..Self::default() };
         let mut blocks = vec![Block::default()];
         for (place, token) in tokens.iter().enumerate() {
-            if let Kind::Close(_) = token.kind {
+            if let TokenClass::Close(_) = token.kind {
                 let open = blocks.pop().and_then(|block| block.open).expect("brackets are in pairs");
                 structure.partner[open] = place;
                 structure.partner[place] = open;
@@ -60,25 +60,25 @@ impl Structure {
             structure.around.push(block.open);
             structure.begins.push(block.has_entries(tokens) && !block.is_within);
             structure.is_unit.push(block.is_unit);
-            if token.is_comment() || token.kind == Kind::Documentation {
+            if token.is_comment() || token.kind == TokenClass::Documentation {
                 continue;
             }
             block.is_within = true;
             match token.kind {
-                Kind::Word if block.head.is_none() && !token.is("pub") => block.head = Some(token.text),
-                Kind::Mark => match token.text {
+                TokenClass::Word if block.head.is_none() && !token.is("pub") => block.head = Some(token.text),
+                TokenClass::Mark => match token.text {
                     ";" => block.end_entry(),
                     "," if block.is_list => block.end_entry(),
                     ":" => block.is_unit = true,
                     "," | "=" => block.is_unit = false,
                     _ => {}
                 },
-                Kind::Open(_) => {
+                TokenClass::Open(_) => {
                     block.is_unit = false;
                     let is_list = block.head.is_some_and(|head| LISTS.contains(&head));
                     blocks.push(Block { open: Some(place), is_list, ..Block::default() });
                 }
-                Kind::Close(Delimiter::Brace) => {
+                TokenClass::Close(Delimiter::Brace) => {
                     let ends = block.head.is_none_or(|head| BLOCKS.contains(&head));
                     let next = tokens[place + 1..].iter().find(|token| !token.is_comment());
                     if ends && next.is_none_or(|next| !goes_on(next)) {
@@ -100,8 +100,8 @@ impl Structure {
 /// Whether an entry goes on with this token after a block.
 fn goes_on(next: &Token) -> bool {
     match next.kind {
-        Kind::Mark => true,
-        Kind::Word => next.is("else"),
+        TokenClass::Mark => true,
+        TokenClass::Word => next.is("else"),
         _ => false,
     }
 }

@@ -11,7 +11,7 @@ use proc_macro2::{Delimiter, TokenStream, TokenTree};
 #[derive(Clone, Debug)]
 pub struct Token<'t> {
     pub text: &'t str,
-    pub kind: Kind,
+    pub kind: TokenClass,
     /// Line ends before it.
     pub lines: usize,
     /// Whether anything is before it: blanks or line ends.
@@ -20,7 +20,7 @@ pub struct Token<'t> {
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TokenClass {
     Word,
     Literal,
     /// `;`, `->`
@@ -43,12 +43,12 @@ impl Token<'_> {
     }
 
     pub fn is_comment(&self) -> bool {
-        matches!(self.kind, Kind::Line | Kind::Comment)
+        matches!(self.kind, TokenClass::Line | TokenClass::Comment)
     }
 
     /// Whether nothing can come after it on its line.
     pub fn ends_line(&self) -> bool {
-        self.kind == Kind::Line || (self.kind == Kind::Documentation && self.text.starts_with("//"))
+        self.kind == TokenClass::Line || (self.kind == TokenClass::Documentation && self.text.starts_with("//"))
     }
 }
 
@@ -76,31 +76,31 @@ impl<'t> Reading<'t> {
             match tree {
                 TokenTree::Group(group) => {
                     let delimiter = group.delimiter();
-                    self.token(group.span_open().byte_range(), Kind::Open(delimiter));
+                    self.token(group.span_open().byte_range(), TokenClass::Open(delimiter));
                     self.stream(group.stream());
-                    self.token(group.span_close().byte_range(), Kind::Close(delimiter));
+                    self.token(group.span_close().byte_range(), TokenClass::Close(delimiter));
                 }
-                TokenTree::Ident(word) => self.token(word.span().byte_range(), Kind::Word),
-                TokenTree::Literal(literal) => self.token(literal.span().byte_range(), Kind::Literal),
-                TokenTree::Punct(mark) => self.token(mark.span().byte_range(), Kind::Mark),
+                TokenTree::Ident(word) => self.token(word.span().byte_range(), TokenClass::Word),
+                TokenTree::Literal(literal) => self.token(literal.span().byte_range(), TokenClass::Literal),
+                TokenTree::Punct(mark) => self.token(mark.span().byte_range(), TokenClass::Mark),
             }
         }
     }
 
     /// A token after its gap. All tokens that a documentation comment stands for have its place.
-    fn token(&mut self, place: Range<usize>, kind: Kind) {
+    fn token(&mut self, place: Range<usize>, kind: TokenClass) {
         if place.start < self.at {
             return;
         }
         self.gap(place.start);
         let text = &self.text[place.clone()];
-        let kind = if text.starts_with("//") || text.starts_with("/*") { Kind::Documentation } else { kind };
-        let is_joint = kind == Kind::Mark && self.at == place.start;
+        let kind = if text.starts_with("//") || text.starts_with("/*") { TokenClass::Documentation } else { kind };
+        let is_joint = kind == TokenClass::Mark && self.at == place.start;
         self.at = place.end;
         if is_joint
             && let Some(last) = self.tokens.last_mut()
             && let Some(pair) = self.text.get(place.start - last.text.len()..place.end)
-            && last.kind == Kind::Mark
+            && last.kind == TokenClass::Mark
             && PAIRS.contains(&pair)
         {
             last.text = pair;
@@ -116,8 +116,8 @@ impl<'t> Reading<'t> {
             let start = from + found;
             let rest = &self.text[start..end];
             let (length, kind) = match rest.strip_prefix("//") {
-                Some(_) => (rest.find('\n').unwrap_or(rest.len()), Kind::Line),
-                None => (block(rest), Kind::Comment),
+                Some(_) => (rest.find('\n').unwrap_or(rest.len()), TokenClass::Line),
+                None => (block(rest), TokenClass::Comment),
             };
             from = start + length;
             self.push(rest[..length].trim_end(), kind, start);
@@ -125,7 +125,7 @@ impl<'t> Reading<'t> {
         }
     }
 
-    fn push(&mut self, text: &'t str, kind: Kind, start: usize) {
+    fn push(&mut self, text: &'t str, kind: TokenClass, start: usize) {
         let end = self
             .tokens
             .last()

@@ -16,7 +16,7 @@ use quick_xml::Writer;
 
 use crate::exported::Described;
 use crate::units::{BASES, in_bases};
-use crate::variables::{Counts, Kind, names, unit};
+use crate::variables::{Counts, VariableKind, names, unit};
 
 pub use terminals::terminals_and_icons;
 
@@ -189,14 +189,20 @@ struct Variable {
 fn variables(model: &dyn Described, number: fn(usize) -> usize) -> Vec<Variable> {
     let (description, nominals) = (model.description(), model.nominals());
     let counts = Counts::of(description);
-    let variable = |(kind, (reference, name)): (Kind, (usize, String))| {
+    let variable = |(kind, (reference, name)): (VariableKind, (usize, String))| {
         let (causality, variability, initial, doc) = match kind {
-            Kind::Time => ("independent", "continuous", None, String::new()),
-            Kind::Parameter(index) => ("parameter", "fixed", Some("exact"), line(description.parameters[index].doc)),
-            Kind::Input(index) => ("input", "continuous", None, line(description.inputs[index].doc)),
-            Kind::Output(_) => ("output", "continuous", Some("calculated"), String::new()),
-            Kind::State(_) | Kind::Derivative(_) => ("local", "continuous", Some("calculated"), String::new()),
-            Kind::Guard(index) => ("local", "continuous", Some("calculated"), line(description.switches[index].name)),
+            VariableKind::Time => ("independent", "continuous", None, String::new()),
+            VariableKind::Parameter(index) => {
+                ("parameter", "fixed", Some("exact"), line(description.parameters[index].doc))
+            }
+            VariableKind::Input(index) => ("input", "continuous", None, line(description.inputs[index].doc)),
+            VariableKind::Output(_) => ("output", "continuous", Some("calculated"), String::new()),
+            VariableKind::State(_) | VariableKind::Derivative(_) => {
+                ("local", "continuous", Some("calculated"), String::new())
+            }
+            VariableKind::Guard(index) => {
+                ("local", "continuous", Some("calculated"), line(description.switches[index].name))
+            }
         };
         let mut about = vec![("name", name), ("valueReference", reference.to_string())];
         if !doc.is_empty() {
@@ -210,21 +216,21 @@ fn variables(model: &dyn Described, number: fn(usize) -> usize) -> Vec<Variable>
         let mut value: Attributes<'static> = unit.map(|unit| ("unit", unit)).into_iter().collect();
         value.extend(shown.map(|unit| ("displayUnit", unit)));
         match kind {
-            Kind::Parameter(index) => {
+            VariableKind::Parameter(index) => {
                 let info = &description.parameters[index];
                 value.extend(limits(&info.range));
                 value.push(("start", format!("{:?}", info.default)));
             }
-            Kind::Input(_) => value.push(("start", "0.0".to_owned())),
+            VariableKind::Input(_) => value.push(("start", "0.0".to_owned())),
             // An event may move it: an impact, the projection.
-            Kind::State(index) => {
+            VariableKind::State(index) => {
                 value.extend(nominals.as_ref().map(|nominals| ("nominal", format!("{:?}", nominals[index]))));
                 value.push(("reinit", "true".to_owned()));
             }
-            Kind::Derivative(index) => {
-                value.push(("derivative", number(counts.reference(Kind::State(index))).to_string()));
+            VariableKind::Derivative(index) => {
+                value.push(("derivative", number(counts.reference(VariableKind::State(index))).to_string()));
             }
-            Kind::Time | Kind::Output(_) | Kind::Guard(_) => {}
+            VariableKind::Time | VariableKind::Output(_) | VariableKind::Guard(_) => {}
         }
         Variable { about, value }
     };
@@ -239,14 +245,15 @@ fn dependencies(
     number: fn(usize) -> usize,
 ) -> Option<(&'static str, String)> {
     // Which inputs a rate reads the pattern does not say: all.
-    let inputs = (0..counts.inputs).map(Kind::Input);
-    let states = pattern?[state].iter().map(|&state| Kind::State(state));
+    let inputs = (0..counts.inputs).map(VariableKind::Input);
+    let states = pattern?[state].iter().map(|&state| VariableKind::State(state));
     let all: Vec<String> = inputs.chain(states).map(|kind| number(counts.reference(kind)).to_string()).collect();
     Some(("dependencies", all.join(" ")))
 }
 
 /// What is calculated in the initialization.
-fn initial(counts: Counts) -> impl Iterator<Item = Kind> {
-    let (outputs, states) = ((0..counts.outputs).map(Kind::Output), (0..counts.states).map(Kind::State));
-    outputs.chain(states).chain((0..counts.states).map(Kind::Derivative))
+fn initial(counts: Counts) -> impl Iterator<Item = VariableKind> {
+    let (outputs, states) =
+        ((0..counts.outputs).map(VariableKind::Output), (0..counts.states).map(VariableKind::State));
+    outputs.chain(states).chain((0..counts.states).map(VariableKind::Derivative))
 }

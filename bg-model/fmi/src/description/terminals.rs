@@ -12,7 +12,7 @@ use bg_model::description::{BondInfo, Description, ElementInfo};
 
 use super::{Attributes, Xml, document, empty, nested};
 use crate::exported::Described;
-use crate::variables::{Counts, Kind, names};
+use crate::variables::{Counts, VariableKind, names};
 
 /// The version that defines the file, whichever the unit's is.
 const DEFINED_BY: &str = "3.0";
@@ -82,7 +82,7 @@ impl Variables {
         let driven = ends.iter().flatten().find_map(|end| Some((*end, self.drives(end)?)));
         let [efforts, flows] = [0, 1].map(|quantity| match driven {
             Some((source, input)) if given_by(source) == Some(quantity) => {
-                vec![self.member(QUANTITIES[quantity].to_owned(), Kind::Input(input))]
+                vec![self.member(QUANTITIES[quantity].to_owned(), VariableKind::Input(input))]
             }
             _ => {
                 let what = QUANTITIES[quantity];
@@ -155,12 +155,12 @@ impl Variables {
                 ".z" => "_z",
                 _ => return None,
             };
-            Some(self.member(format!("{what}{suffix}"), Kind::Output(index)))
+            Some(self.member(format!("{what}{suffix}"), VariableKind::Output(index)))
         });
         member.collect()
     }
 
-    fn member(&self, name: String, kind: Kind) -> Member {
+    fn member(&self, name: String, kind: VariableKind) -> Member {
         let reference = Counts::of(self.description).reference(kind);
         Member { name, variable: self.names[reference].clone(), kind: SIGNAL }
     }

@@ -8,7 +8,7 @@ use super::{
     Packing, Variable, Xml, categories, dependencies, empty, experiment, head, initial, nested, serialized, units,
 };
 use crate::exported::Described;
-use crate::variables::{Counts, Kind, clock_names, names};
+use crate::variables::{Counts, VariableKind, clock_names, names};
 
 pub(super) fn write(xml: &mut Xml, model: &dyn Described, packing: &Packing, token: &str) -> io::Result<()> {
     let description = model.description();
@@ -62,17 +62,17 @@ fn structure(xml: &mut Xml, model: &dyn Described) -> io::Result<()> {
     let pattern = model.dependencies();
     let reference = |kind| vec![("valueReference", counts.reference(kind).to_string())];
     nested(xml, "ModelStructure", &[], |xml| {
-        (0..counts.outputs).try_for_each(|index| empty(xml, "Output", &reference(Kind::Output(index))))?;
+        (0..counts.outputs).try_for_each(|index| empty(xml, "Output", &reference(VariableKind::Output(index))))?;
         let clocks = model.clocks().len();
         let clock = |index| vec![("valueReference", counts.clock(index).to_string())];
         (0..clocks).try_for_each(|index| empty(xml, "Output", &clock(index)))?;
         for index in 0..counts.states {
-            let mut attributes = reference(Kind::Derivative(index));
+            let mut attributes = reference(VariableKind::Derivative(index));
             attributes.extend(dependencies(pattern.as_deref(), counts, index, |reference| reference));
             empty(xml, "ContinuousStateDerivative", &attributes)?;
         }
         initial(counts).try_for_each(|kind| empty(xml, "InitialUnknown", &reference(kind)))?;
         (0..clocks).try_for_each(|index| empty(xml, "InitialUnknown", &clock(index)))?;
-        (0..counts.guards).try_for_each(|index| empty(xml, "EventIndicator", &reference(Kind::Guard(index))))
+        (0..counts.guards).try_for_each(|index| empty(xml, "EventIndicator", &reference(VariableKind::Guard(index))))
     })
 }

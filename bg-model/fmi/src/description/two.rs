@@ -9,7 +9,7 @@ use super::{
     Packing, Variable, Xml, categories, dependencies, empty, experiment, head, initial, nested, serialized, units,
 };
 use crate::exported::Described;
-use crate::variables::{Counts, Kind};
+use crate::variables::{Counts, VariableKind};
 
 /// The place of the variable of a value reference: these count from 0 without a gap.
 fn place(reference: usize) -> usize {
@@ -56,9 +56,9 @@ fn structure(xml: &mut Xml, model: &dyn Described) -> io::Result<()> {
         }
         nested(xml, name, &[], |xml| entries.iter().try_for_each(|entry| empty(xml, "Unknown", entry)))
     }
-    let outputs: Vec<_> = (0..counts.outputs).map(|output| index(Kind::Output(output))).collect();
+    let outputs: Vec<_> = (0..counts.outputs).map(|output| index(VariableKind::Output(output))).collect();
     let derivatives = (0..counts.states).map(|state| {
-        let mut attributes = index(Kind::Derivative(state));
+        let mut attributes = index(VariableKind::Derivative(state));
         attributes.extend(dependencies(pattern.as_deref(), counts, state, place));
         attributes
     });

@@ -4,7 +4,7 @@
 //! In: unknowns, knowns, seeds. Out: sensitivities: J s, or J^T s. The latter takes a column of J for each known.
 
 use super::{Fault, Instance, same_length};
-use crate::variables::Kind;
+use crate::variables::VariableKind;
 
 impl Instance {
     /// Writes J `seed` into `sensitivity`, where J has a row for each of `unknowns` and a column for each of `knowns`.
@@ -23,8 +23,8 @@ impl Instance {
         let (mut states, mut inputs) = (vec![0.0; self.counts.states], vec![0.0; self.counts.inputs]);
         for (&known, seed) in knowns.iter().zip(seed) {
             match self.counts.kind(known).ok_or(Fault::Reference(known))? {
-                Kind::State(index) => states[index] += seed,
-                Kind::Input(index) => inputs[index] += seed,
+                VariableKind::State(index) => states[index] += seed,
+                VariableKind::Input(index) => inputs[index] += seed,
                 _ => return Err(self.no_derivative(unknowns, known)),
             }
         }
@@ -33,9 +33,9 @@ impl Instance {
         let along = made.slopes.along(&made.machine, &signals, &states, &inputs);
         for (&unknown, sensitivity) in unknowns.iter().zip(sensitivity) {
             *sensitivity = match counts.kind(unknown).ok_or(Fault::Reference(unknown))? {
-                Kind::Derivative(index) => along.rates[index],
-                Kind::Output(index) => along.outputs[index],
-                Kind::Guard(index) => along.guards[index],
+                VariableKind::Derivative(index) => along.rates[index],
+                VariableKind::Output(index) => along.outputs[index],
+                VariableKind::Guard(index) => along.guards[index],
                 _ => return Err(self.no_derivative(&[unknown], knowns.first().copied().unwrap_or(0))),
             };
         }

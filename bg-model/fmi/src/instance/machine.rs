@@ -15,7 +15,7 @@ use bg_model::statistics::Statistics;
 use bg_model::{clock, sampled};
 
 use super::Fault;
-use super::saved::Place;
+use super::saved::ModelState;
 
 /// The part of the machine's size by which a host's steps may have left joints, orientations and stops: it may have
 /// located an event no better.
@@ -280,7 +280,7 @@ impl Stood {
     ///
     /// # Errors
     /// The model cannot stand there.
-    pub fn place(&mut self, Place { t, x, largest, negative, step }: &Place) -> Result<(), Fault> {
+    pub fn place(&mut self, ModelState { t, x, largest, negative, step }: &ModelState) -> Result<(), Fault> {
         (self.t, self.computed, self.ticked) = (*t, *t, *t);
         self.set_states(x);
         raise(&mut self.largest, largest);

@@ -17,7 +17,7 @@ use bg_model::simulation::NoNumber;
 use bg_model::statistics::Statistics;
 
 use crate::exported::{Exported, Made};
-use crate::variables::{Counts, Kind, names};
+use crate::variables::{Counts, VariableKind, names};
 pub use fault::Fault;
 pub(crate) use machine::{Stood, nominals_at_start};
 pub use saved::Snapshot;
@@ -344,11 +344,11 @@ impl Instance {
         same_length("values", values.len(), references.len())?;
         let counts = self.counts;
         let kinds = references.iter().map(|&reference| counts.kind(reference).ok_or(Fault::Reference(reference)));
-        let kinds: Vec<Kind> = kinds.collect::<Result<_, _>>()?;
-        let asks = |is: fn(&Kind) -> bool, count: usize| if kinds.iter().any(is) { count } else { 0 };
-        let mut rates = vec![0.0; asks(|kind| matches!(kind, Kind::Derivative(_)), counts.states)];
-        let mut outputs = vec![0.0; asks(|kind| matches!(kind, Kind::Output(_)), counts.outputs)];
-        let mut guards = vec![0.0; asks(|kind| matches!(kind, Kind::Guard(_)), counts.guards)];
+        let kinds: Vec<VariableKind> = kinds.collect::<Result<_, _>>()?;
+        let asks = |is: fn(&VariableKind) -> bool, count: usize| if kinds.iter().any(is) { count } else { 0 };
+        let mut rates = vec![0.0; asks(|kind| matches!(kind, VariableKind::Derivative(_)), counts.states)];
+        let mut outputs = vec![0.0; asks(|kind| matches!(kind, VariableKind::Output(_)), counts.outputs)];
+        let mut guards = vec![0.0; asks(|kind| matches!(kind, VariableKind::Guard(_)), counts.guards)];
         if !rates.is_empty() {
             self.machine()?.rates(&mut rates);
         }
@@ -360,17 +360,17 @@ impl Instance {
         }
         for (value, &kind) in values.iter_mut().zip(&kinds) {
             *value = match kind {
-                Kind::Time => self.time()?,
-                Kind::Parameter(index) => self.parameters[index],
-                Kind::Input(index) => self.signals.get(index),
-                Kind::Output(index) => outputs[index],
-                Kind::State(index) => self.machine()?.states()[index],
-                Kind::Derivative(index) => rates[index],
-                Kind::Guard(index) => guards[index],
+                VariableKind::Time => self.time()?,
+                VariableKind::Parameter(index) => self.parameters[index],
+                VariableKind::Input(index) => self.signals.get(index),
+                VariableKind::Output(index) => outputs[index],
+                VariableKind::State(index) => self.machine()?.states()[index],
+                VariableKind::Derivative(index) => rates[index],
+                VariableKind::Guard(index) => guards[index],
             };
         }
         self.check_finite(values, |model, place| match kinds[place] {
-            Kind::Output(index) => (model.outputs[index].name.to_owned(), Some(model.outputs[index].observes)),
+            VariableKind::Output(index) => (model.outputs[index].name.to_owned(), Some(model.outputs[index].observes)),
             _ => (names(model).get(references[place] as usize).cloned().unwrap_or_default(), None),
         })
     }
@@ -395,20 +395,20 @@ impl Instance {
         same_length("values", values.len(), references.len())?;
         for (&reference, &value) in references.iter().zip(values) {
             match self.counts.kind(reference).ok_or(Fault::Reference(reference))? {
-                Kind::Parameter(index) => {
+                VariableKind::Parameter(index) => {
                     self.only("to set a parameter", &[Mode::Instantiated, Mode::Initialization])?;
                     self.model.check(index, value)?;
                     self.parameters[index] = value;
                     self.made = None;
                 }
-                Kind::Input(index) if value.is_finite() => {
+                VariableKind::Input(index) if value.is_finite() => {
                     let is_new = self.signals.get(index).to_bits() != value.to_bits();
                     self.signals.set(index, value);
                     if let Some(made) = self.made.as_mut().filter(|_| is_new) {
                         made.machine.disturb();
                     }
                 }
-                Kind::Input(_) => return Err(Fault::NotFinite { name: self.name(reference), value }),
+                VariableKind::Input(_) => return Err(Fault::NotFinite { name: self.name(reference), value }),
                 _ => return Err(Fault::Calculated(self.name(reference))),
             }
         }

@@ -32,13 +32,13 @@ struct Text {
     inputs: Vec<f64>,
     start: f64,
     rtol: f64,
-    place: Option<Place>,
+    place: Option<ModelState>,
 }
 
 /// Where a model stands.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Place {
+pub(crate) struct ModelState {
     /// Time, s.
     pub t: f64,
     /// The states.
@@ -107,7 +107,7 @@ impl Instance {
         if snapshot.made.as_ref().is_some_and(|made| made.machine.delays()) {
             return Err(Fault::Delays(self.description().name));
         }
-        let place = snapshot.made.as_ref().map(|made| Place {
+        let place = snapshot.made.as_ref().map(|made| ModelState {
             t: made.machine.time(),
             x: made.machine.states().to_vec(),
             largest: made.machine.largest().to_vec(),
@@ -139,7 +139,7 @@ impl Instance {
         self.check_own(&text.token)?;
         let mode = Mode::ALL.into_iter().find(|mode| mode.name() == text.mode).ok_or_else(|| foreign("its mode"))?;
         self.check_mode(mode)?;
-        let fits = |place: &Place| {
+        let fits = |place: &ModelState| {
             let has_all = place.x.len() == self.counts.states && place.largest.len() == self.counts.states;
             let fits = |negative: &Vec<bool>| negative.len() == self.counts.guards;
             has_all && place.negative.as_ref().is_none_or(fits) && place.t.is_finite()

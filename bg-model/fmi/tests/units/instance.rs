@@ -1,7 +1,7 @@
 //! An instance through its safe layer: trajectories, events, derivatives, saved states, refusals.
 
 use crate::machines::{Ball, Pendulum, Shaker};
-use bg_fmi::variables::Kind;
+use bg_fmi::variables::VariableKind;
 use bg_fmi::{Exported, Instance, Interface, Of, Packing, Version, model_description, token};
 use bg_model::bond_graph;
 use bg_model::input::Input;
@@ -55,29 +55,29 @@ bond_graph! {
 }
 
 /// The value reference of a variable: they count through time, parameters, inputs, outputs, states, derivatives.
-fn reference(model: &dyn Exported, kind: Kind) -> u32 {
+fn reference(model: &dyn Exported, kind: VariableKind) -> u32 {
     let d = model.description();
     let sizes = [1, d.parameters.len(), d.inputs.len(), d.outputs.len(), d.states.len(), d.states.len()];
     let first = |row: usize| sizes[..row].iter().sum::<usize>();
     let place = match kind {
-        Kind::Time => 0,
-        Kind::Parameter(k) => first(1) + k,
-        Kind::Input(k) => first(2) + k,
-        Kind::Output(k) => first(3) + k,
-        Kind::State(k) => first(4) + k,
-        Kind::Derivative(k) => first(5) + k,
-        Kind::Guard(k) => first(6) + k,
+        VariableKind::Time => 0,
+        VariableKind::Parameter(k) => first(1) + k,
+        VariableKind::Input(k) => first(2) + k,
+        VariableKind::Output(k) => first(3) + k,
+        VariableKind::State(k) => first(4) + k,
+        VariableKind::Derivative(k) => first(5) + k,
+        VariableKind::Guard(k) => first(6) + k,
     };
     u32::try_from(place).unwrap()
 }
 
-fn get(instance: &mut Instance, model: &dyn Exported, kind: Kind) -> f64 {
+fn get(instance: &mut Instance, model: &dyn Exported, kind: VariableKind) -> f64 {
     let mut value = [f64::NAN];
     instance.get(&[reference(model, kind)], &mut value).unwrap();
     value[0]
 }
 
-fn set(instance: &mut Instance, model: &dyn Exported, kind: Kind, value: f64) {
+fn set(instance: &mut Instance, model: &dyn Exported, kind: VariableKind, value: f64) {
     instance.set(&[reference(model, kind)], &[value]).unwrap();
 }
 
@@ -159,7 +159,7 @@ fn exchanged(instance: &mut Instance, t_end: f64, h: f64) -> u32 {
 fn model_exchange_leads_where_our_run_does() {
     let mut instance = begun(&PENDULUM, Interface::ModelExchange, 1e-9);
     exchanged(&mut instance, 1.0, 1e-3);
-    let angle = get(&mut instance, &PENDULUM, Kind::Output(0));
+    let angle = get(&mut instance, &PENDULUM, VariableKind::Output(0));
     let wanted = own(&Pendulum::new(Default::default()).unwrap(), 1.0, 1e-10, "angle");
     assert!((angle - wanted).abs() < 1e-8, "{angle} {wanted}");
 }
@@ -176,9 +176,9 @@ fn samples_are_computed_at_the_instants_of_their_clock() {
         simulation.step(f64::from(k) * 0.01, 0.01).unwrap();
     }
     for instance in [&mut exchange, &mut simulation] {
-        assert!((get(instance, &SAMPLED, Kind::Output(0)) - speed).abs() < 1e-9);
+        assert!((get(instance, &SAMPLED, VariableKind::Output(0)) - speed).abs() < 1e-9);
         // 0.97 s is an instant: what is held is that of it.
-        assert!((get(instance, &SAMPLED, Kind::Output(1)) - torque).abs() < 1e-8);
+        assert!((get(instance, &SAMPLED, VariableKind::Output(1)) - torque).abs() < 1e-8);
     }
 }
 
@@ -186,7 +186,7 @@ fn samples_are_computed_at_the_instants_of_their_clock() {
 fn events_of_model_exchange_switch_and_jump() {
     let mut shaker = begun(&SHAKER, Interface::ModelExchange, 1e-9);
     let events = exchanged(&mut shaker, 1.0, 1e-3);
-    let x = get(&mut shaker, &SHAKER, Kind::Output(0));
+    let x = get(&mut shaker, &SHAKER, VariableKind::Output(0));
     let wanted = own(&Shaker::make(Default::default(), &[]).unwrap(), 1.0, 1e-11, "x");
     assert!(events == 3 && (x - wanted).abs() < 1e-8, "{events} {x} {wanted}");
 
@@ -196,7 +196,7 @@ fn events_of_model_exchange_switch_and_jump() {
     let fall = (2.0 * 1.25 / 9.81_f64).sqrt();
     let rise = 1.0 - fall;
     let wanted = 0.5 * 9.81 * fall * rise - 0.5 * 9.81 * rise * rise;
-    let height = get(&mut ball, &BALL, Kind::Output(0));
+    let height = get(&mut ball, &BALL, VariableKind::Output(0));
     assert!(events >= 1 && (height - wanted).abs() < 1e-9, "{events} {height} {wanted}");
 }
 
@@ -206,7 +206,7 @@ fn co_simulation_goes_on_from_step_to_step() {
     for k in 0..1000 {
         instance.step(f64::from(k) * 1e-3, 1e-3).unwrap();
     }
-    let angle = get(&mut instance, &PENDULUM, Kind::Output(0));
+    let angle = get(&mut instance, &PENDULUM, VariableKind::Output(0));
     let wanted = own(&Pendulum::new(Default::default()).unwrap(), 1.0, 1e-10, "angle");
     assert!((instance.time().unwrap() - 1.0).abs() < 1e-12 && (angle - wanted).abs() < 1e-9, "{angle} {wanted}");
     // A step of DOP853 takes twelve rates; one that began anew would take two more.
@@ -223,7 +223,8 @@ fn events_inside_a_step_of_co_simulation_are_handled() {
             let t = f64::from(k) * h;
             ball.step(t, h.min(2.0 - t)).unwrap();
         }
-        let (height, lost) = (get(&mut ball, &BALL, Kind::Output(0)), get(&mut ball, &BALL, Kind::Output(2)));
+        let (height, lost) =
+            (get(&mut ball, &BALL, VariableKind::Output(0)), get(&mut ball, &BALL, VariableKind::Output(2)));
         assert!(height.abs() < 1e-8 && (lost - 2.0 * 9.81 * 1.25).abs() < 1e-6, "{h}: {height} {lost}");
     }
 }
@@ -232,7 +233,7 @@ fn events_inside_a_step_of_co_simulation_are_handled() {
 fn an_input_holds_from_one_step_to_the_next() {
     // A force of steps: ours as a table that jumps is the sum of its pieces.
     let mut shaker = Instance::new(&SHAKER, Interface::CoSimulation);
-    set(&mut shaker, &SHAKER, Kind::Parameter(2), 0.0);
+    set(&mut shaker, &SHAKER, VariableKind::Parameter(2), 0.0);
     shaker.enter_initialization(0.0, Some(1e-10)).unwrap();
     shaker.exit_initialization().unwrap();
     let parameters = crate::machines::ShakerParameters { stretch: 0.0, ..Default::default() };
@@ -240,7 +241,7 @@ fn an_input_holds_from_one_step_to_the_next() {
     let mut state = None;
     for k in 0..50 {
         let t = f64::from(k) * 0.02;
-        set(&mut shaker, &SHAKER, Kind::Input(0), force(t));
+        set(&mut shaker, &SHAKER, VariableKind::Input(0), force(t));
         shaker.step(t, 0.02).unwrap();
         let model = Shaker::make(parameters.clone(), &[Input::constant(force(t))]).unwrap();
         let piece = Simulation::new(&model).rtol(1e-10).until(t + 0.02);
@@ -250,7 +251,7 @@ fn an_input_holds_from_one_step_to_the_next() {
         };
         state = Some(piece.run().unwrap().last.clone());
     }
-    let (x, wanted) = (get(&mut shaker, &SHAKER, Kind::State(0)), state.unwrap().states[0].1);
+    let (x, wanted) = (get(&mut shaker, &SHAKER, VariableKind::State(0)), state.unwrap().states[0].1);
     assert!(wanted.abs() > 1e-3 && (x - wanted).abs() < 1e-8, "{x} {wanted}");
     // The rate at the start of a step is that of the new force: with that of the old one steps would be rejected.
     let cost = shaker.statistics();
@@ -263,9 +264,10 @@ fn derivatives_are_those_of_differences() {
         let mut instance = begun(model, Interface::ModelExchange, 1e-9);
         exchanged(&mut instance, 0.21, 1e-3);
         let (n, d) = (instance.state_count(), model.description());
-        let unknowns: Vec<Kind> = (0..n).map(Kind::Derivative).chain((0..d.outputs.len()).map(Kind::Output)).collect();
+        let unknowns: Vec<VariableKind> =
+            (0..n).map(VariableKind::Derivative).chain((0..d.outputs.len()).map(VariableKind::Output)).collect();
         let unknowns: Vec<u32> = unknowns.into_iter().map(|kind| reference(model, kind)).collect();
-        let knowns = (0..n).map(Kind::State).chain((0..d.inputs.len()).map(Kind::Input));
+        let knowns = (0..n).map(VariableKind::State).chain((0..d.inputs.len()).map(VariableKind::Input));
         let mut x = vec![0.0; n];
         instance.states(&mut x).unwrap();
         let adjoint_seed: Vec<f64> = (0..unknowns.len()).map(|k| 0.3 + 0.1 * k as f64).collect();
@@ -280,7 +282,7 @@ fn derivatives_are_those_of_differences() {
             let mut at = |by: f64| {
                 let mut values = vec![0.0; unknowns.len()];
                 let mut moved = x.clone();
-                if let Kind::State(k) = known {
+                if let VariableKind::State(k) = known {
                     moved[k] += by;
                 } else {
                     set(&mut instance, model, known, by);
@@ -340,23 +342,23 @@ impl ModelVisitor<DoubleDouble> for Values<'_> {
 fn derivatives_to_ten_digits<Me: Mechanism>(model: &'static dyn Exported, force: f64) {
     let mut instance = begun(model, Interface::ModelExchange, 1e-9);
     let (n, d) = (instance.state_count(), model.description());
-    (0..d.inputs.len()).for_each(|input| set(&mut instance, model, Kind::Input(input), force));
+    (0..d.inputs.len()).for_each(|input| set(&mut instance, model, VariableKind::Input(input), force));
     exchanged(&mut instance, 0.21, 1e-3);
-    let (t, mut x) = (get(&mut instance, model, Kind::Time), vec![0.0; n]);
+    let (t, mut x) = (get(&mut instance, model, VariableKind::Time), vec![0.0; n]);
     instance.states(&mut x).unwrap();
-    let unknowns = (0..n).map(Kind::Derivative).chain((0..d.outputs.len()).map(Kind::Output));
+    let unknowns = (0..n).map(VariableKind::Derivative).chain((0..d.outputs.len()).map(VariableKind::Output));
     let unknowns: Vec<u32> = unknowns.map(|kind| reference(model, kind)).collect();
     let values = |moved: Option<(usize, f64)>, force: f64| {
         let inputs = vec![Input::constant(force); d.inputs.len()];
         Me::make(Me::Parameters::default(), &inputs).unwrap().visit(Values { t, x: &x, moved })
     };
     let mut largest: f64 = 0.0;
-    for known in (0..n).map(Kind::State).chain((0..d.inputs.len()).map(Kind::Input)) {
+    for known in (0..n).map(VariableKind::State).chain((0..d.inputs.len()).map(VariableKind::Input)) {
         let mut column = vec![0.0; unknowns.len()];
         instance.directional(&unknowns, &[reference(model, known)], &[1.0], &mut column).unwrap();
         // Of a state a step whose square is beyond doubles; what depends on an input is a parabola, whose differences are exact.
         let (h, [ahead, behind]) = match known {
-            Kind::State(row) => (1e-10, [1e-10, -1e-10].map(|by| values(Some((row, by)), force))),
+            VariableKind::State(row) => (1e-10, [1e-10, -1e-10].map(|by| values(Some((row, by)), force))),
             _ => (0.5, [0.5, -0.5].map(|by| values(None, force + by))),
         };
         let differences: Vec<f64> =
@@ -384,18 +386,18 @@ fn derivatives_have_ten_digits() {
 #[test]
 fn a_saved_state_goes_on_with_the_same_bits_and_its_bytes_nearly_so() {
     let mut instance = begun(&BALL, Interface::CoSimulation, 1e-9);
-    set(&mut instance, &BALL, Kind::Input(0), 1.0);
+    set(&mut instance, &BALL, VariableKind::Input(0), 1.0);
     for k in 0..7 {
         instance.step(f64::from(k) * 0.1, 0.1).unwrap();
     }
     let saved = instance.save();
     let bytes = instance.serialize(&saved).unwrap();
     let on = |instance: &mut Instance| {
-        set(instance, &BALL, Kind::Input(0), 2.0);
+        set(instance, &BALL, VariableKind::Input(0), 2.0);
         for k in 7..12 {
             instance.step(f64::from(k) * 0.1, 0.1).unwrap();
         }
-        [0, 1, 2].map(|output| get(instance, &BALL, Kind::Output(output)))
+        [0, 1, 2].map(|output| get(instance, &BALL, VariableKind::Output(output)))
     };
     let first = on(&mut instance);
     instance.restore(&saved).unwrap();
@@ -415,26 +417,26 @@ fn a_saved_state_goes_on_with_the_same_bits_and_its_bytes_nearly_so() {
 fn a_restored_instance_has_all_that_was_saved() {
     let bounce = |value: f64| {
         let mut instance = Instance::new(&BALL, Interface::CoSimulation);
-        set(&mut instance, &BALL, Kind::Parameter(1), value);
+        set(&mut instance, &BALL, VariableKind::Parameter(1), value);
         instance.enter_initialization(0.0, Some(1e-7)).unwrap();
         instance.exit_initialization().unwrap();
         instance
     };
     let mut instance = bounce(0.25);
-    set(&mut instance, &BALL, Kind::Input(0), 1.0);
+    set(&mut instance, &BALL, VariableKind::Input(0), 1.0);
     (0..7).for_each(|k| instance.step(f64::from(k) * 0.1, 0.1).unwrap());
     let saved = instance.save();
     let bytes = instance.serialize(&saved).unwrap();
     let mut other = bounce(0.75);
-    set(&mut other, &BALL, Kind::Input(0), 3.0);
+    set(&mut other, &BALL, VariableKind::Input(0), 3.0);
     for snapshot in [saved, other.deserialize(&bytes).unwrap()] {
         other.restore(&snapshot).unwrap();
-        assert_eq!(get(&mut other, &BALL, Kind::Parameter(1)), 0.25);
-        assert_eq!(get(&mut other, &BALL, Kind::Input(0)), 1.0);
+        assert_eq!(get(&mut other, &BALL, VariableKind::Parameter(1)), 0.25);
+        assert_eq!(get(&mut other, &BALL, VariableKind::Input(0)), 1.0);
         let again = other.serialize(&other.save()).unwrap();
         assert_eq!(String::from_utf8(again), String::from_utf8(bytes.clone()));
         other.step(0.7, 0.1).unwrap();
-        set(&mut other, &BALL, Kind::Input(0), 3.0);
+        set(&mut other, &BALL, VariableKind::Input(0), 3.0);
     }
 }
 
@@ -443,8 +445,8 @@ fn a_parameter_that_is_set_once_more_makes_the_model_anew() {
     let mut instance = Instance::new(&BALL, Interface::CoSimulation);
     instance.enter_initialization(0.0, None).unwrap();
     for height in [1.25, 0.5] {
-        set(&mut instance, &BALL, Kind::Parameter(0), height);
-        assert_eq!(get(&mut instance, &BALL, Kind::Output(0)), height);
+        set(&mut instance, &BALL, VariableKind::Parameter(0), height);
+        assert_eq!(get(&mut instance, &BALL, VariableKind::Output(0)), height);
     }
 }
 
@@ -462,17 +464,17 @@ fn nominal_values_are_those_of_the_whole_run() {
     let fallen = 2.0 * 9.81 * 0.4;
     assert!(nominal(&mut ball) >= fallen);
     ball.step(0.4, 4.0).unwrap();
-    assert!(get(&mut ball, &BALL, Kind::Output(1)).abs() < 1e-9 && nominal(&mut ball) >= fallen);
+    assert!(get(&mut ball, &BALL, VariableKind::Output(1)).abs() < 1e-9 && nominal(&mut ball) >= fallen);
 }
 
 #[test]
 fn what_cannot_be_is_refused_in_words() {
     let mut instance = Instance::new(&PENDULUM, Interface::CoSimulation);
-    let length = reference(&PENDULUM, Kind::Parameter(1));
+    let length = reference(&PENDULUM, VariableKind::Parameter(1));
     let refused = instance.set(&[length], &[-1.0]).unwrap_err().to_string();
     assert_eq!(refused, "parameter `length` = -1 m is out of range: it must be a finite number, above 0");
     let mut value = [0.0];
-    assert!(instance.get(&[reference(&PENDULUM, Kind::Output(0))], &mut value).is_err());
+    assert!(instance.get(&[reference(&PENDULUM, VariableKind::Output(0))], &mut value).is_err());
     let mut instance = begun(&PENDULUM, Interface::CoSimulation, 1e-8);
     let late = instance.set(&[length], &[1.0]).unwrap_err().to_string();
     assert_eq!(late, "to set a parameter is not possible in Step Mode");
@@ -529,15 +531,15 @@ fn a_delay_is_for_co_simulation() {
     for k in 0..10 {
         instance.step(0.1 * f64::from(k), 0.1).unwrap();
     }
-    let found = get(&mut instance, &LATE, Kind::Output(0));
+    let found = get(&mut instance, &LATE, VariableKind::Output(0));
     let run = own(&Late::new(Default::default()).unwrap(), 1.0, 1e-11, "speed");
     assert!((found - run).abs() < 1e-6 && run.abs() > 1.0, "{found} {run}");
     let kept = instance.save();
     instance.step(1.0, 0.3).unwrap();
-    let first = get(&mut instance, &LATE, Kind::Output(0));
+    let first = get(&mut instance, &LATE, VariableKind::Output(0));
     instance.restore(&kept).unwrap();
     instance.step(1.0, 0.3).unwrap();
-    assert_eq!(get(&mut instance, &LATE, Kind::Output(0)), first);
+    assert_eq!(get(&mut instance, &LATE, VariableKind::Output(0)), first);
     let refused = instance.serialize(&kept).unwrap_err().to_string();
     assert!(refused.contains("`Late` delays a signal") && refused.contains("from a state in memory"), "{refused}");
     let mut exchanged = Instance::new(&LATE, Interface::ModelExchange);

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use super::Reader;
 use super::defaults::Element;
 use crate::ImportError;
-use crate::robot::{Coupling, Kind, Length, Loop, Pose};
+use crate::robot::{Coupling, JointKind, Length, Loop, Pose};
 use crate::xml::Node;
 
 /// Those of a file.
@@ -124,7 +124,7 @@ fn closed(reader: &mut Reader, node: &Node, weld: bool) -> Result<(), ImportErro
             reader.robot.notes.push(format!("Weld `{name}` holds the start pose, not its relpose."));
         }
     }
-    let kind = if weld { Kind::Fixed } else { Kind::Spherical };
+    let kind = if weld { JointKind::Fixed } else { JointKind::Spherical };
     reader.robot.loops.push(Loop { name, kind, ends: [(one, ends.0), (other, ends.1)] });
     Ok(())
 }

@@ -23,7 +23,7 @@ pub struct Fitted {
 
 /// Types that are fitted.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum FittedShape {
     Sphere,
     Capsule,
     Cylinder,
@@ -31,7 +31,7 @@ pub enum Kind {
     Cuboid,
 }
 
-impl Kind {
+impl FittedShape {
     /// By its word in a file; none where it is not fitted.
     pub fn new(word: &str) -> Option<Self> {
         Some(match word {
@@ -59,18 +59,18 @@ impl Kind {
 const EQUAL: f64 = 1e-6;
 
 /// To the box of an inertia, sizes times `scale`.
-pub fn to_moments(kind: Kind, inertia: &Inertia, scale: f64) -> Fitted {
+pub fn to_moments(kind: FittedShape, inertia: &Inertia, scale: f64) -> Fitted {
     let (axes, gaps) = principal(inertia);
     let half = inertia.box_edges(&axes) / 2.0;
     let radius = (half.x + half.y) / 2.0;
     let sizes = match kind {
-        Kind::Sphere => [half.mean(), 0.0, 0.0],
-        Kind::Capsule => [radius, (half.z - radius / 2.0).max(0.0), 0.0],
-        Kind::Cylinder => [radius, half.z, 0.0],
-        Kind::Ellipsoid | Kind::Cuboid => half.into(),
+        FittedShape::Sphere => [half.mean(), 0.0, 0.0],
+        FittedShape::Capsule => [radius, (half.z - radius / 2.0).max(0.0), 0.0],
+        FittedShape::Cylinder => [radius, half.z, 0.0],
+        FittedShape::Ellipsoid | FittedShape::Cuboid => half.into(),
     };
     // A box with two equal moments has equal edges across: any turn of it has the same moments.
-    let is_round = matches!(kind, Kind::Capsule | Kind::Cylinder);
+    let is_round = matches!(kind, FittedShape::Capsule | FittedShape::Cylinder);
     Fitted {
         shape: kind.shape(sizes.map(|size| scale * size)),
         frame: Pose { turned: axes, place: inertia.center },
@@ -79,7 +79,7 @@ pub fn to_moments(kind: Kind, inertia: &Inertia, scale: f64) -> Fitted {
 }
 
 /// To the bounds of a mesh's vertices along the principal axes of its inertia, sizes times `scale`.
-pub fn to_bounds(kind: Kind, mesh: &Mesh, inertia: &Inertia, scale: f64) -> Fitted {
+pub fn to_bounds(kind: FittedShape, mesh: &Mesh, inertia: &Inertia, scale: f64) -> Fitted {
     let (axes, gaps) = principal(inertia);
     let vertices: Vec<Vector3<f64>> =
         mesh.0.iter().flatten().map(|vertex| axes.transpose() * (vertex - inertia.center)).collect();
@@ -89,10 +89,10 @@ pub fn to_bounds(kind: Kind, mesh: &Mesh, inertia: &Inertia, scale: f64) -> Fitt
     let (middle, half) = ((least + most) / 2.0, (most - least) / 2.0);
     let radius = half.x.max(half.y);
     let sizes = match kind {
-        Kind::Sphere => [half.max(), 0.0, 0.0],
-        Kind::Capsule => [radius, (half.z - radius).max(0.0), 0.0],
-        Kind::Cylinder => [radius, half.z, 0.0],
-        Kind::Ellipsoid | Kind::Cuboid => half.into(),
+        FittedShape::Sphere => [half.max(), 0.0, 0.0],
+        FittedShape::Capsule => [radius, (half.z - radius).max(0.0), 0.0],
+        FittedShape::Cylinder => [radius, half.z, 0.0],
+        FittedShape::Ellipsoid | FittedShape::Cuboid => half.into(),
     };
     Fitted {
         shape: kind.shape(sizes.map(|size| scale * size)),

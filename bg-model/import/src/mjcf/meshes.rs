@@ -49,7 +49,7 @@ impl<'n> Meshes<'n> {
     }
 
     /// A primitive fitted to a mesh, its sizes times `scale`; why not in words.
-    pub fn fitted(&self, name: &str, kind: fitted::Kind, scale: f64) -> Result<Fitted, String> {
+    pub fn fitted(&self, name: &str, kind: fitted::FittedShape, scale: f64) -> Result<Fitted, String> {
         let (mesh, inertia) = self.known(name, false)?;
         Ok(if self.fits_bounds {
             fitted::to_bounds(kind, &mesh, &inertia, scale)

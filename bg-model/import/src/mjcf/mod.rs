@@ -29,7 +29,7 @@ use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::robot::{Inertia, Joint, Kind, Law, Length, Link, Pose, Robot, Spring};
+use crate::robot::{Inertia, Joint, JointKind, Law, Length, Link, Pose, Robot, Spring};
 use crate::xml::{Node, unread};
 use crate::{Folder, ImportError, Options};
 use compiler::FromShapes;
@@ -162,7 +162,7 @@ impl<'n> Reader<'n> {
         }
         if joints.is_empty() {
             from = self.link(&name, absolute);
-            self.robot.joints.push(Joint::new(&format!("{name}_mount"), Kind::Fixed, (parent, from), pose));
+            self.robot.joints.push(Joint::new(&format!("{name}_mount"), JointKind::Fixed, (parent, from), pose));
         }
         self.robot.links[from].inertia = inertia;
         self.lift(node, from)?;
@@ -182,19 +182,19 @@ impl<'n> Reader<'n> {
             kinds.push(self.kind(joint)?);
         }
         let wrong = |what: &str| Err(ImportError::Wrong { place: body.place.clone(), what: what.to_owned() });
-        let is_free = kinds.contains(&Kind::Free);
+        let is_free = kinds.contains(&JointKind::Free);
         if is_free && kinds.len() > 1 {
             return wrong("a body with a free joint has no other joint: leave one out");
         }
         if is_free && parent != 0 {
             return wrong("a free joint is for bodies of <worldbody> only: move the body there");
         }
-        let turns = |kind: &Kind| matches!(kind, Kind::Spherical | Kind::Revolute);
-        let after_ball = kinds.iter().skip_while(|kind| **kind != Kind::Spherical).skip(1);
+        let turns = |kind: &JointKind| matches!(kind, JointKind::Spherical | JointKind::Revolute);
+        let after_ball = kinds.iter().skip_while(|kind| **kind != JointKind::Spherical).skip(1);
         if after_ball.clone().any(turns) {
             return wrong("a body with a ball joint turns about nothing else after it: leave a joint out");
         }
-        let freedoms: usize = kinds.iter().map(|kind| if *kind == Kind::Spherical { 3 } else { 1 }).sum();
+        let freedoms: usize = kinds.iter().map(|kind| if *kind == JointKind::Spherical { 3 } else { 1 }).sum();
         if freedoms > 6 {
             return wrong("a body moves in at most 6 ways: leave a joint out");
         }
@@ -241,16 +241,16 @@ impl<'n> Reader<'n> {
     }
 
     /// Which motion a joint leaves.
-    fn kind(&self, item: &Item<'n>) -> Result<Kind, ImportError> {
+    fn kind(&self, item: &Item<'n>) -> Result<JointKind, ImportError> {
         if item.node.name == "freejoint" {
-            return Ok(Kind::Free);
+            return Ok(JointKind::Free);
         }
         let element = self.scopes.element(item.node, item.class)?;
         match element.text("type").unwrap_or("hinge") {
-            "free" => Ok(Kind::Free),
-            "ball" => Ok(Kind::Spherical),
-            "slide" => Ok(Kind::Prismatic),
-            "hinge" => Ok(Kind::Revolute),
+            "free" => Ok(JointKind::Free),
+            "ball" => Ok(JointKind::Spherical),
+            "slide" => Ok(JointKind::Prismatic),
+            "hinge" => Ok(JointKind::Revolute),
             other => Err(item.node.bad("type", other, "free, ball, slide or hinge")),
         }
     }
@@ -270,8 +270,8 @@ impl<'n> Reader<'n> {
             return Ok(());
         }
         let element = self.scopes.element(item.node, item.class)?;
-        let place = if kind == Kind::Free { Vector3::zeros() } else { element.vector("pos")?.unwrap_or_default() };
-        let anchor = Pose::at(if kind == Kind::Free { place } else { item.frame.then(&Pose::at(place)).place });
+        let place = if kind == JointKind::Free { Vector3::zeros() } else { element.vector("pos")?.unwrap_or_default() };
+        let anchor = Pose::at(if kind == JointKind::Free { place } else { item.frame.then(&Pose::at(place)).place });
         let mut joint = Joint { in_child: anchor, ..Joint::new(name, kind, ends, frame.then(&anchor)) };
         if self.settings.dampers {
             joint.damping = Law(element.up_to("damping")?);
@@ -289,7 +289,7 @@ impl<'n> Reader<'n> {
 
     /// What a free and a ball joint have.
     fn turning_joint(&mut self, element: &Element<'n>, joint: &mut Joint) -> Result<(), ImportError> {
-        if joint.kind == Kind::Free {
+        if joint.kind == JointKind::Free {
             joint.armature = element.not_negative("armature")?;
         }
         if joint.damping.0[0] < 0.0 {
@@ -316,7 +316,7 @@ impl<'n> Reader<'n> {
     /// The armature of a free joint resists the velocity of the origin and the angular velocity alike: a ball there,
     /// without a weight.
     fn armatures_of_free_joints(&mut self) {
-        let free = self.robot.joints.iter_mut().filter(|joint| joint.kind == Kind::Free && joint.armature > 0.0);
+        let free = self.robot.joints.iter_mut().filter(|joint| joint.kind == JointKind::Free && joint.armature > 0.0);
         for joint in free {
             let (armature, link) = (std::mem::take(&mut joint.armature), &mut self.robot.links[joint.child]);
             let ball = Inertia { mass: armature, center: Vector3::zeros(), tensor: armature * Matrix3::identity() };
@@ -352,7 +352,8 @@ impl<'n> Reader<'n> {
         let size = axis.amax();
         let direction = if size > 1e-8 { (axis / size).normalize() } else { return Err(bad()) };
         joint.axis = item.frame.turned * direction;
-        let unit = if joint.kind == Kind::Revolute { self.scopes.of(element.node).compiler.angles.unit } else { 1.0 };
+        let unit =
+            if joint.kind == JointKind::Revolute { self.scopes.of(element.node).compiler.angles.unit } else { 1.0 };
         let reference = element.number("ref")?.unwrap_or(0.0) * unit;
         let friction = element.not_negative("frictionloss")?;
         joint.friction = if self.settings.friction { friction } else { 0.0 };

@@ -6,7 +6,7 @@
 use nalgebra::{DMatrix, Matrix3, Matrix6, Vector3, Vector6};
 
 use super::Reader;
-use crate::robot::{Inertia, Joint, Kind, Length, Pose};
+use crate::robot::{Inertia, Joint, JointKind, Length, Pose};
 
 /// Inertias of a robot's freedoms.
 pub struct Moved {
@@ -95,10 +95,10 @@ fn ways(joint: &Joint, places: &[Pose]) -> Vec<Vector6<f64>> {
     let shift = |axis: Vector3<f64>| Vector6::new(0.0, 0.0, 0.0, axis.x, axis.y, axis.z);
     let all = || (0..3).map(|k| frame.turned.column(k).into_owned());
     match joint.kind {
-        Kind::Revolute => vec![turn(frame.turned * joint.axis)],
-        Kind::Prismatic => vec![shift(frame.turned * joint.axis)],
-        Kind::Spherical => all().map(turn).collect(),
-        Kind::Free => all().map(shift).chain(all().map(turn)).collect(),
+        JointKind::Revolute => vec![turn(frame.turned * joint.axis)],
+        JointKind::Prismatic => vec![shift(frame.turned * joint.axis)],
+        JointKind::Spherical => all().map(turn).collect(),
+        JointKind::Free => all().map(shift).chain(all().map(turn)).collect(),
         _ => Vec::new(),
     }
 }

@@ -72,7 +72,7 @@ pub fn read(element: &Element, scopes: &Scopes, is_wanted: bool) -> Result<Massi
             return Ok(Massive { inertia: None, axes: None, note: None });
         }
         if kind != "mesh" {
-            let Some(fitted_kind) = fitted::Kind::new(kind) else {
+            let Some(fitted_kind) = fitted::FittedShape::new(kind) else {
                 return Ok(unknown(&format!("a {kind} fitted to a mesh")));
             };
             let scale = element.number("fitscale")?.unwrap_or(1.0);

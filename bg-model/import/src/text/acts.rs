@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::law::{energy, loose, odd, polynomial, sum, within};
 use super::{JointNames, Writer, axis, coordinate, coordinate_word, effort, is_point, line};
 use crate::number::{number, rotation, vector};
-use crate::robot::{Actuator, Coupling, Drag, Joint, Kind, Law, Length, Pose, Spring, Tendon};
+use crate::robot::{Actuator, Coupling, Drag, Joint, JointKind, Law, Length, Pose, Spring, Tendon};
 
 impl Writer<'_> {
     /// What brakes a spherical joint: a resistance to the relative angular velocity.
@@ -37,7 +37,7 @@ impl Writer<'_> {
     pub(super) fn coupling(&self, coupling: &Coupling) -> String {
         let [(follower, name), (leader, other)] =
             [coupling.follower, coupling.leader].map(|joint| (&self.robot.joints[joint], &self.joints[joint].joint));
-        let domain = if follower.kind == Kind::Prismatic { "translation" } else { "rotation" };
+        let domain = if follower.kind == JointKind::Prismatic { "translation" } else { "rotation" };
         let mut text = String::new();
         line(&mut text, &format!("// `{name}` follows `{other}`."));
         let word = if coupling.is_linear() { "TF" } else { "MTF" };
@@ -109,13 +109,13 @@ impl Writer<'_> {
             };
             length.parts.iter().map(term).collect::<Vec<_>>()
         };
-        let flow = |joint: &Joint| if joint.kind == Kind::Prismatic { "slide.flow" } else { "spin.flow" };
+        let flow = |joint: &Joint| if joint.kind == JointKind::Prismatic { "slide.flow" } else { "spin.flow" };
         [terms(place, &coordinate_word), terms(speed, &flow)].concat()
     }
 
     /// The unit of a force along a length: that of a joint's effort where all are of one kind.
     fn unit_along(&self, length: &Length) -> &'static str {
-        let is_turning = |part: &(usize, f64)| self.robot.joints[part.0].kind == Kind::Revolute;
+        let is_turning = |part: &(usize, f64)| self.robot.joints[part.0].kind == JointKind::Revolute;
         if length.parts.iter().all(is_turning) { "N*m" } else { "N" }
     }
 
@@ -131,7 +131,7 @@ impl Writer<'_> {
             line(text, &format!("I {name}_rotor = {}; {flow} -> {name}_rotor;", number(joint.armature)));
         }
         if let Some(limits) = joint.limits.filter(|_| self.options.limits) {
-            let start = if joint.kind == Kind::Prismatic { "" } else { start };
+            let start = if joint.kind == JointKind::Prismatic { "" } else { start };
             line(text, &stop(name, name, limits, start));
         }
         if self.has_drives() {

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use crate::robot::{Joint, Kind, Pose};
+use crate::robot::{Joint, JointKind, Pose};
 
 /// A joint's frames.
 pub struct Frames {
@@ -20,7 +20,7 @@ pub struct Frames {
 pub fn frames(joint: &Joint) -> Frames {
     let Joint { kind, in_parent, in_child, axis, .. } = joint;
     let (in_parent, in_child) = (*in_parent, *in_child);
-    if !matches!(kind, Kind::Revolute | Kind::Prismatic | Kind::Cylindrical) {
+    if !matches!(kind, JointKind::Revolute | JointKind::Prismatic | JointKind::Cylindrical) {
         return Frames { letter: "", reversed: false, in_parent, in_child };
     }
     match ["x", "y", "z"].into_iter().zip(axis.iter()).find(|(_, part)| axis.abs().sum() - part.abs() < 1e-12) {

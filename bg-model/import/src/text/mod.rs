@@ -15,7 +15,7 @@ use nalgebra::Vector3;
 use crate::Options;
 use crate::names::{Names, shown, type_name};
 use crate::number::{inverse_rotation, is_identity, matrix, number, rotation, vector};
-use crate::robot::{Actuator, Coupling, Inertia, Joint, Kind, Link, Loop, Pose, Robot, Tendon};
+use crate::robot::{Actuator, Coupling, Inertia, Joint, JointKind, Link, Loop, Pose, Robot, Tendon};
 use frames::{Frames, frames};
 
 /// Columns of a comment.
@@ -61,7 +61,7 @@ pub fn write(robot: &Robot, file: &str, options: Options) -> String {
     };
     let drags = robot.links.iter().enumerate().map(drag).collect();
     let mut points = vec![Vec::new(); robot.links.len()];
-    for (k, joint) in robot.joints.iter().enumerate().filter(|(_, joint)| joint.kind != Kind::Free) {
+    for (k, joint) in robot.joints.iter().enumerate().filter(|(_, joint)| joint.kind != JointKind::Free) {
         points[joint.parent].push((k, true));
         points[joint.child].push((k, false));
     }
@@ -102,7 +102,7 @@ struct JointNames {
 
 impl JointNames {
     fn new(joint: &Joint, names: &mut Names) -> Self {
-        let effort = if joint.kind == Kind::Prismatic { "force" } else { "torque" };
+        let effort = if joint.kind == JointKind::Prismatic { "force" } else { "torque" };
         let made =
             ["start", effort, "bearing", "friction", "spring", "rotor", "stop", "motor", "follows", "ratio", "tie"];
         let made = if joint.is_scalar() { &made[..] } else { &["bearing", "twist", "moment"] };
@@ -194,7 +194,7 @@ impl Writer<'_> {
                 line(&mut text, &format!("param {}: {unit} = {start};", names.start));
             }
         }
-        let has_welds = self.robot.loops.iter().any(|closed| closed.kind != Kind::Spherical);
+        let has_welds = self.robot.loops.iter().any(|closed| closed.kind != JointKind::Spherical);
         let used = [
             (self.options.compliant, "joint", "joints", true),
             (!self.robot.loops.is_empty(), "loop", "joints that close loops", has_welds),
@@ -300,7 +300,7 @@ impl Writer<'_> {
         let start = if reversed { format!("-{}", names.start) } else { names.start.clone() };
         let parent = self.turned(joint.parent);
         let carried: Vec<String> = parent.iter().cloned().chain(rotation(&in_parent.turned)).collect();
-        let turned: Vec<String> = if joint.kind == Kind::Revolute {
+        let turned: Vec<String> = if joint.kind == JointKind::Revolute {
             let spin = format!("rotation_{letter}({start})");
             carried.iter().cloned().chain([spin]).chain(inverse_rotation(&in_child.turned)).collect()
         } else {
@@ -311,7 +311,7 @@ impl Writer<'_> {
         if in_parent.place != Vector3::zeros() {
             place.push(product(parent.as_slice(), vector(&in_parent.place, 1e-3)));
         }
-        if joint.kind == Kind::Prismatic {
+        if joint.kind == JointKind::Prismatic {
             let along = ["x", "y", "z"].map(|axis| if axis == letter { start.as_str() } else { "0" }).join(", ");
             place.push(product(&carried, format!("[{along}]")));
         }
@@ -340,18 +340,21 @@ impl Writer<'_> {
         let name = &names.joint;
         let Frames { letter, reversed, in_parent, in_child } = frames(joint);
         let kind = match joint.kind {
-            Kind::Free => return self.drag(joint),
-            Kind::Fixed => "fixed".to_owned(),
-            Kind::Revolute => format!("revolute {letter}"),
-            Kind::Prismatic => format!("prismatic {letter}"),
-            Kind::Cylindrical => format!("cylindrical {letter}"),
-            Kind::Universal => "universal x y".to_owned(),
-            Kind::Spherical => "spherical".to_owned(),
+            JointKind::Free => return self.drag(joint),
+            JointKind::Fixed => "fixed".to_owned(),
+            JointKind::Revolute => format!("revolute {letter}"),
+            JointKind::Prismatic => format!("prismatic {letter}"),
+            JointKind::Cylindrical => format!("cylindrical {letter}"),
+            JointKind::Universal => "universal x y".to_owned(),
+            JointKind::Spherical => "spherical".to_owned(),
         };
         let (parent, child) = (self.end(joint.parent, name, &in_parent), self.end(joint.child, name, &in_child));
         let (first, second) = if reversed { (child, parent) } else { (parent, child) };
-        let clauses =
-            if self.options.compliant { clauses("joint", joint.kind != Kind::Spherical) } else { "rigid;".to_owned() };
+        let clauses = if self.options.compliant {
+            clauses("joint", joint.kind != JointKind::Spherical)
+        } else {
+            "rigid;".to_owned()
+        };
         let mut text = String::new();
         line(&mut text, &format!("joint {name}: {kind} ({first} -> {second}) {{ {clauses} }}"));
         if joint.is_scalar() {
@@ -375,13 +378,13 @@ impl Writer<'_> {
     /// A joint that closes a loop.
     fn closed(&self, closed: &Loop, name: &str) -> String {
         let kind = match closed.kind {
-            Kind::Spherical => "spherical",
-            Kind::Revolute => "revolute z",
-            Kind::Prismatic => "prismatic z",
+            JointKind::Spherical => "spherical",
+            JointKind::Revolute => "revolute z",
+            JointKind::Prismatic => "prismatic z",
             _ => "fixed",
         };
         let [first, second] = closed.ends.each_ref().map(|(link, pose)| self.end(*link, name, pose));
-        let clauses = clauses("loop", closed.kind != Kind::Spherical);
+        let clauses = clauses("loop", closed.kind != JointKind::Spherical);
         format!("joint {name}: {kind} ({first} -> {second}) {{ {clauses} }}\n")
     }
 
@@ -396,7 +399,7 @@ impl Writer<'_> {
             let (name, unit) = (&names.joint, coordinate(joint).1);
             line(&mut inner, &format!("{name}: {unit} = {name}.{};", coordinate_word(joint)));
         }
-        for joint in self.robot.joints.iter().filter(|joint| joint.kind == Kind::Free) {
+        for joint in self.robot.joints.iter().filter(|joint| joint.kind == JointKind::Free) {
             let body = &self.bodies[joint.child];
             line(&mut inner, &format!("{body}_position: m = {body}.origin.position;"));
         }
@@ -436,14 +439,14 @@ impl Writer<'_> {
     /// Of rigid joints the model itself, of compliant ones the same with rigid ones.
     fn scene(&self, graph: &str) -> String {
         if !self.options.compliant {
-            let is_jointed = self.robot.joints.iter().any(|joint| joint.kind != Kind::Free);
+            let is_jointed = self.robot.joints.iter().any(|joint| joint.kind != JointKind::Free);
             let scene = || format!("scenes only;\n/// In the coordinates of its joints.\nscene {graph} {{}}\n");
             return is_jointed.then(scene).unwrap_or_default();
         }
         let joints = if self.robot.loops.is_empty() {
             "joints;".to_owned()
         } else {
-            let held = self.robot.joints.iter().zip(&self.joints).filter(|(joint, _)| joint.kind != Kind::Free);
+            let held = self.robot.joints.iter().zip(&self.joints).filter(|(joint, _)| joint.kind != JointKind::Free);
             format!("{{ {} }}", held.map(|(_, names)| names.joint.as_str()).collect::<Vec<_>>().join(", "))
         };
         format!("/// The same on rigid joints.\nscene {graph}Rigid {{\n    rigid {joints}\n}}\n")
@@ -485,21 +488,21 @@ fn is_point(pose: &Pose) -> bool {
 }
 
 fn coordinate(joint: &Joint) -> (&'static str, &'static str) {
-    if joint.kind == Kind::Prismatic { ("Travel", "m") } else { ("Angle", "rad") }
+    if joint.kind == JointKind::Prismatic { ("Travel", "m") } else { ("Angle", "rad") }
 }
 
 /// What its angle or travel is called.
 fn coordinate_word(joint: &Joint) -> &'static str {
-    if joint.kind == Kind::Prismatic { "travel" } else { "angle" }
+    if joint.kind == JointKind::Prismatic { "travel" } else { "angle" }
 }
 
 /// The junction of its free axis.
 fn axis(joint: &Joint) -> &'static str {
-    if joint.kind == Kind::Prismatic { "slide" } else { "spin" }
+    if joint.kind == JointKind::Prismatic { "slide" } else { "spin" }
 }
 
 fn effort(joint: &Joint) -> (&'static str, &'static str) {
-    if joint.kind == Kind::Prismatic { ("force", "N") } else { ("torque", "N*m") }
+    if joint.kind == JointKind::Prismatic { ("force", "N") } else { ("torque", "N*m") }
 }
 
 fn line(text: &mut String, line: &str) {

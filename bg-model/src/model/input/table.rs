@@ -117,9 +117,9 @@ impl Table {
     /// The value at time `t` (s).
     pub fn value<S: Scalar>(&self, t: S) -> S {
         match self.row_before(t) {
-            Place::Before => S::from_f64(self.values[0]),
-            Place::After => S::from_f64(self.values[self.values.len() - 1]),
-            Place::Between(row) => self.part(row).value(t),
+            Stretch::Before => S::from_f64(self.values[0]),
+            Stretch::After => S::from_f64(self.values[self.values.len() - 1]),
+            Stretch::Between(row) => self.part(row).value(t),
         }
     }
 
@@ -127,8 +127,8 @@ impl Table {
     /// it jumps, 0 from the last row on.
     pub fn rate<S: Scalar>(&self, t: S) -> S {
         match self.row_before(t) {
-            Place::Before | Place::After => S::from_f64(0.0),
-            Place::Between(row) => self.part(row).rate(t),
+            Stretch::Before | Stretch::After => S::from_f64(0.0),
+            Stretch::Between(row) => self.part(row).rate(t),
         }
     }
 
@@ -140,16 +140,16 @@ impl Table {
     }
 
     /// Between which rows the time `t` (s) is. Compared in `S`, which may tell it from a row where `f64` cannot.
-    fn row_before<S: Scalar>(&self, t: S) -> Place {
+    fn row_before<S: Scalar>(&self, t: S) -> Stretch {
         match self.times.partition_point(|time| S::from_f64(*time) <= t) {
-            0 => Place::Before,
-            rows if rows == self.times.len() => Place::After,
-            rows => Place::Between(rows - 1),
+            0 => Stretch::Before,
+            rows if rows == self.times.len() => Stretch::After,
+            rows => Stretch::Between(rows - 1),
         }
     }
 
     /// The law from row `row` to the next one.
-    fn part<S: Scalar>(&self, row: usize) -> Part<S> {
+    fn part<S: Scalar>(&self, row: usize) -> HermiteCubic<S> {
         let of = |column: &[f64]| [column[row], column[row + 1]].map(S::from_f64);
         let ([start, end], [from, to]) = (of(&self.times), of(&self.values));
         let length = end - start;
@@ -162,12 +162,12 @@ impl Table {
                 [leaving, bend, ((arriving - chord) / length - bend) / length]
             }
         };
-        Part { start, end, from, slope, bend, twist }
+        HermiteCubic { start, end, from, slope, bend, twist }
     }
 }
 
 /// Where a time is in a table.
-enum Place {
+enum Stretch {
     /// Before the first row.
     Before,
     /// At or after this row and before the next one.
@@ -178,7 +178,7 @@ enum Place {
 
 /// The law between two rows: Newton's form of Hermite's cubic, whose nodes are both rows twice. The value at a row is
 /// that of the row in every scalar, so the parts meet.
-struct Part<S> {
+struct HermiteCubic<S> {
     start: S,
     end: S,
     from: S,
@@ -187,7 +187,7 @@ struct Part<S> {
     twist: S,
 }
 
-impl<S: Scalar> Part<S> {
+impl<S: Scalar> HermiteCubic<S> {
     fn value(&self, t: S) -> S {
         let (since, until) = (t - self.start, t - self.end);
         self.from + since * (self.slope + since * (self.bend + until * self.twist))

@@ -17,7 +17,7 @@ use crate::solve::simulation::{Observer, Switching};
 
 /// As many directions as the steps have slopes.
 pub(super) struct Follower {
-    parts: Vec<Part>,
+    parts: Vec<DirectionGroup>,
     /// The system with slopes of nothing.
     plain: Rc<dyn Machine<Gradient>>,
     /// The slopes where the run has come to.
@@ -34,7 +34,7 @@ pub(super) struct Follower {
 }
 
 /// A few of the directions.
-struct Part {
+struct DirectionGroup {
     /// The system in numbers that have slopes along them.
     system: Rc<dyn Machine<Gradient>>,
     /// The state at the start.
@@ -45,7 +45,7 @@ struct Part {
     events: Vec<AtEvent>,
 }
 
-impl Part {
+impl DirectionGroup {
     /// Keeps the outputs on both sides of an event.
     fn keep(&mut self, jump: &Jump, event: &Switching) {
         let mut at_event = AtEvent { t: event.before.t, values: [const { Vec::new() }; 2], slopes: Vec::new() };
@@ -80,22 +80,23 @@ impl Follower {
         t0: f64,
     ) -> Result<Self, AssemblyError> {
         let outputs_of_all = plain.description().outputs.len();
-        let part = |(system, directions): (Rc<dyn Machine<Gradient>>, &[Direction])| -> Result<Part, AssemblyError> {
-            let mut begin = system.start()?;
-            for (l, direction) in directions.iter().enumerate() {
-                if let Direction::Start(state) = direction {
-                    let mut slopes = begin[*state].slopes();
-                    slopes[l] += 1.0;
-                    begin[*state] = Gradient::new(begin[*state].value, slopes);
+        let part =
+            |(system, directions): (Rc<dyn Machine<Gradient>>, &[Direction])| -> Result<DirectionGroup, AssemblyError> {
+                let mut begin = system.start()?;
+                for (l, direction) in directions.iter().enumerate() {
+                    if let Direction::Start(state) = direction {
+                        let mut slopes = begin[*state].slopes();
+                        slopes[l] += 1.0;
+                        begin[*state] = Gradient::new(begin[*state].value, slopes);
+                    }
                 }
-            }
-            Ok(Part {
-                system,
-                begin,
-                slopes: vec![vec![Vec::new(); outputs_of_all]; directions.len()],
-                events: Vec::new(),
-            })
-        };
+                Ok(DirectionGroup {
+                    system,
+                    begin,
+                    slopes: vec![vec![Vec::new(); outputs_of_all]; directions.len()],
+                    events: Vec::new(),
+                })
+            };
         let parts = systems.into_iter().zip(directions.chunks(WIDTH)).map(part).collect::<Result<_, _>>()?;
         Ok(Self {
             negative: vec![false; plain.switches()],
@@ -115,7 +116,7 @@ impl Follower {
         if self.has_begun {
             return true;
         }
-        for (place, Part { system, begin, .. }) in self.parts.iter().enumerate() {
+        for (place, DirectionGroup { system, begin, .. }) in self.parts.iter().enumerate() {
             if begin.iter().zip(x).any(|(begin, x)| begin.value != *x) {
                 self.error = Some(SensitivityError::ImpactAtStart);
                 return false;
@@ -131,7 +132,7 @@ impl Follower {
 
     /// The derivatives of the states where the run has come to, for each direction.
     pub fn states(&self) -> Vec<Vec<f64>> {
-        let of_part = |(place, part): (usize, &Part)| {
+        let of_part = |(place, part): (usize, &DirectionGroup)| {
             let now = self.steps.now(place, &vec![0.0; part.begin.len()]);
             let of = |l: usize| now.iter().map(|state| state.slopes()[l]).collect();
             (0..part.slopes.len()).map(of).collect::<Vec<_>>()
@@ -176,7 +177,7 @@ impl Observer for Follower {
             self.error = Some(SensitivityError::Inexact { t });
             return;
         }
-        for (place, Part { system, slopes, .. }) in self.parts.iter_mut().enumerate() {
+        for (place, DirectionGroup { system, slopes, .. }) in self.parts.iter_mut().enumerate() {
             let reached = if is_inside { self.steps.looked_at(place, x) } else { self.steps.now(place, x) };
             let mut outputs = vec![Gradient::from_f64(0.0); system.description().outputs.len()];
             system.outputs(Gradient::from_f64(t), &reached, negative, &mut outputs);

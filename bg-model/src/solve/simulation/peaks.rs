@@ -139,7 +139,7 @@ impl Past {
 }
 
 /// The part of a step from which on and up to which it is looked at.
-type Part = [f64; 2];
+type Stretch = [f64; 2];
 
 /// A step as short beside another one as the argument of a difference of outputs.
 const DIFFERENCE: f64 = 1e-6;
@@ -248,7 +248,7 @@ impl<'a> PeakMonitor<'a> {
     }
 
     /// Looks for what is beyond the known inside of a part of a step, of the outputs that may turn.
-    fn search(&mut self, step: &mut Inside<'_, '_>, part: Part, is_short: bool) {
+    fn search(&mut self, step: &mut Inside<'_, '_>, part: Stretch, is_short: bool) {
         let [low, high] = part;
         self.slope(step, low, false);
         self.slope(step, high, true);
@@ -303,7 +303,7 @@ impl<'a> PeakMonitor<'a> {
 }
 
 /// The neighbourhood of the lowest of some points inside of a part.
-fn lowest_piece([low, high]: Part, at: &mut impl FnMut(f64) -> f64) -> Part {
+fn lowest_piece([low, high]: Stretch, at: &mut impl FnMut(f64) -> f64) -> Stretch {
     let piece = (high - low) / f64::from(PIECES);
     let inside = (1..PIECES).map(|k| low + f64::from(k) * piece);
     let values = inside.map(|theta| (theta, at(theta)));

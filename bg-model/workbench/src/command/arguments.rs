@@ -17,7 +17,7 @@ use crate::ask::hint;
 use crate::ask::request::Integration;
 use crate::ask::request::T_END;
 use crate::show::picture::Level;
-use crate::show::tables::Part;
+use crate::show::tables::ScenePart;
 use crate::show::trajectory::Form;
 use crate::studies::golden::FOLDER;
 
@@ -121,7 +121,7 @@ pub struct GraphArguments {
 
     /// What to print; without it, an overview of counts, states and operations
     #[arg(long, value_name = "PART", value_enum, conflicts_with_all = ["svg", "dot"])]
-    pub part: Option<Part>,
+    pub part: Option<ScenePart>,
 
     /// Draw the graph into this file: half arrows, causal strokes, multibonds thick. Replaces a file that is there
     #[arg(long, value_name = "FILE")]

@@ -10,7 +10,7 @@ use super::{InputError, ended};
 use crate::files::console;
 use crate::program::Program;
 use crate::run::running::{Begin, Outcome};
-use crate::studies::golden::{Place, Recorded, check_one, prepare};
+use crate::studies::golden::{Destination, Recorded, check_one, prepare};
 
 /// A run that stops before its end is not recorded.
 pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode, InputError> {
@@ -20,7 +20,7 @@ pub fn record(program: &Program, arguments: &RecordArguments) -> Result<ExitCode
     let request = integration.request(0.0, None)?;
     let scene = program.scene_called(&model.scene);
     let name = name.as_deref().unwrap_or(&scene.name);
-    let claim = || Ok(Place::claim(out, name, program.models.graph().description.name)?);
+    let claim = || Ok(Destination::claim(out, name, program.models.graph().description.name)?);
     let machine = machine(program, scene, &chosen)?;
     let (Outcome { run, failure }, _, place) = claimed_and_run(&*machine, request, &Begin::Model, None, claim)?;
     if let Some(failure) = failure {

@@ -10,7 +10,7 @@ use super::{InputError, ended, say};
 use crate::ask::parameters::number;
 use crate::files::{console, json, whole};
 use crate::program::Program;
-use crate::studies::sweep::folder::{Folder, Kind};
+use crate::studies::sweep::folder::{Folder, ShardFile};
 use crate::studies::sweep::plan::Plan;
 use crate::studies::sweep::shown::{self, Progress};
 use crate::studies::sweep::{Outcome, Share, SweepError, drawn, recipe, sweep};
@@ -70,7 +70,7 @@ pub fn obey(program: &Program, arguments: &SweepArguments) -> Result<ExitCode, I
         let folder = Folder::open(folder).map_err(SweepError::from)?;
         let progress = Progress::of(&folder).map_err(SweepError::from)?;
         let told = drawn::write(program, &folder)?;
-        for (kind, path) in [(Kind::Runs, csv), (Kind::Trajectories, trajectories)] {
+        for (kind, path) in [(ShardFile::Runs, csv), (ShardFile::Trajectories, trajectories)] {
             path.iter().try_for_each(|path| whole::write(path, |file| shown::write_csv(&folder, kind, file)))?;
         }
         let as_json = || {

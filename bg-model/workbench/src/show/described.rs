@@ -5,7 +5,7 @@
 use bg_model::description::{BondEnd, BondInfo, Description, ElementInfo, OperationCount, OutputInfo, StateInfo};
 use serde_json::{Map, Value, json};
 
-use super::tables::{Part, one_line, rate_operations};
+use super::tables::{ScenePart, one_line, rate_operations};
 use crate::ask::parameters;
 use crate::ask::scenes::Scene;
 
@@ -26,23 +26,30 @@ pub fn scene(scene: &Scene) -> Value {
 
 /// The graph of a scene: all parts of it, each by its name, or one.
 #[must_use]
-pub fn graph(scene: &Scene, part: Option<Part>) -> Value {
+pub fn graph(scene: &Scene, part: Option<ScenePart>) -> Value {
     let description = scene.description;
-    let all = [Part::Source, Part::Elements, Part::Bonds, Part::States, Part::Equations, Part::Operations];
+    let all = [
+        ScenePart::Source,
+        ScenePart::Elements,
+        ScenePart::Bonds,
+        ScenePart::States,
+        ScenePart::Equations,
+        ScenePart::Operations,
+    ];
     let wanted = all.into_iter().filter(|one| part.is_none_or(|part| part == *one));
     let head = [("graph", description.name), ("scene", &scene.name)];
     let head = head.into_iter().map(|(key, name)| (key.to_owned(), Value::from(name)));
     head.chain(wanted.map(|part| one(description, part))).collect::<Map<_, _>>().into()
 }
 
-fn one(description: &Description, part: Part) -> (String, Value) {
+fn one(description: &Description, part: ScenePart) -> (String, Value) {
     let (name, value) = match part {
-        Part::Source => ("source", description.graph.into()),
-        Part::Elements => ("elements", description.elements.iter().map(element).collect()),
-        Part::Bonds => ("bonds", description.bonds.iter().map(bond).collect()),
-        Part::States => ("states", description.states.iter().map(state).collect()),
-        Part::Equations => ("equations", description.equations.iter().copied().collect()),
-        Part::Operations => ("operations", description.operations.iter().map(operations).collect()),
+        ScenePart::Source => ("source", description.graph.into()),
+        ScenePart::Elements => ("elements", description.elements.iter().map(element).collect()),
+        ScenePart::Bonds => ("bonds", description.bonds.iter().map(bond).collect()),
+        ScenePart::States => ("states", description.states.iter().map(state).collect()),
+        ScenePart::Equations => ("equations", description.equations.iter().copied().collect()),
+        ScenePart::Operations => ("operations", description.operations.iter().map(operations).collect()),
     };
     (name.to_owned(), value)
 }

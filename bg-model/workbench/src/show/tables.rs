@@ -11,7 +11,7 @@ pub use crate::files::table::table;
 
 /// A part of what a scene consists of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Part {
+pub enum ScenePart {
     /// The graph in bond-graph words: what the mechanism words stand for
     Source,
     /// Junctions and elements with their laws
@@ -65,15 +65,15 @@ pub fn scene(scene: &Scene, table: &[ParameterInfo]) -> String {
 
 /// A part of the scene's graph; without one, an overview: the counts, the states and the operations.
 #[must_use]
-pub fn graph(scene: &Scene, part: Option<Part>) -> String {
+pub fn graph(scene: &Scene, part: Option<ScenePart>) -> String {
     let description = scene.description;
     match part {
-        Some(Part::Source) => description.graph.trim_end().to_owned() + "\n",
-        Some(Part::Elements) => elements(description),
-        Some(Part::Bonds) => bonds(description),
-        Some(Part::States) => states(description.states),
-        Some(Part::Equations) => description.equations.iter().map(|line| format!("{line}\n")).collect(),
-        Some(Part::Operations) => operations(description),
+        Some(ScenePart::Source) => description.graph.trim_end().to_owned() + "\n",
+        Some(ScenePart::Elements) => elements(description),
+        Some(ScenePart::Bonds) => bonds(description),
+        Some(ScenePart::States) => states(description.states),
+        Some(ScenePart::Equations) => description.equations.iter().map(|line| format!("{line}\n")).collect(),
+        Some(ScenePart::Operations) => operations(description),
         None => overview(&scene.name, description),
     }
 }

@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use bg_workbench::Program;
-use bg_workbench::sweep::folder::{Folder, Kind, Traffic};
+use bg_workbench::sweep::folder::{Folder, ShardFile, Traffic};
 use bg_workbench::sweep::plan::Plan;
 use bg_workbench::sweep::shown::{Progress, joined};
 use bg_workbench::sweep::{Outcome, Share, recipe, sweep};
@@ -121,7 +121,7 @@ fn parts_that_were_killed_are_made_again_and_merged_once() {
     // Merged, each file is read once, and the rows are those of one process.
     let merged = Folder::open(sweep.folder.path()).unwrap();
     let before = merged.traffic();
-    let rows = joined(&merged, Kind::Runs).unwrap();
+    let rows = joined(&merged, ShardFile::Runs).unwrap();
     let asked = merged.traffic();
     assert_eq!(asked.names - before.names, count as u64);
     let files = (0..count).map(|part| sweep.folder.path().join(format!("runs-{part:06}.parquet")));
@@ -131,7 +131,7 @@ fn parts_that_were_killed_are_made_again_and_merged_once() {
     let alone = Sweep { folder: tempfile::tempdir().unwrap(), ..Sweep::of(&program, count) };
     let whole = Folder::claim(alone.folder.path(), &recipe::of(&program, &alone.plan)).unwrap();
     sweep_all(&program, &alone.plan, &whole);
-    assert!(joined(&whole, Kind::Runs).unwrap().bytes() == rows.bytes());
+    assert!(joined(&whole, ShardFile::Runs).unwrap().bytes() == rows.bytes());
 }
 
 fn sweep_all(program: &Program, plan: &Plan<'_>, folder: &Folder) {

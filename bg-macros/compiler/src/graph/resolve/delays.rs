@@ -8,7 +8,7 @@
 
 use proc_macro2::Span;
 
-use super::{Place, Resolver};
+use super::{Context, Resolver};
 use crate::graph::term::{Operation, Reference, Term, TermKind};
 use crate::graph::units::Dimension;
 use crate::graph::{Clock, Delay, DelayedSignal, GraphFault, Integral, Let};
@@ -21,7 +21,12 @@ const DEGREE: usize = 12;
 impl Resolver {
     /// `delay(SIGNAL, TIME)`, `delay(SIGNAL, TIME, START)`: what the signal was at the time TIME before, and START
     /// where that is before the run, else what it is at the start.
-    pub(super) fn delayed_at_any_time(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
+    pub(super) fn delayed_at_any_time(
+        &mut self,
+        function: &Name,
+        arguments: &[Expression],
+        place: Context<'_>,
+    ) -> Term {
         let span = function.span;
         let zero = Term { kind: TermKind::Number(0.0), span };
         let (signal, time, start) = match arguments {
@@ -33,12 +38,12 @@ impl Resolver {
                 return zero;
             }
         };
-        if place == Place::Start {
+        if place == Context::Start {
             self.fault(span, &GraphFault::DelayAtStart);
             return zero;
         }
-        let signal = self.term(signal, Place::Plain);
-        let start = start.map(|start| self.term(start, Place::Start));
+        let signal = self.term(signal, Context::Plain);
+        let start = start.map(|start| self.term(start, Context::Start));
         let (delay, at) = self.delay_by(time);
         let (is_given, first, clock) = (start.is_some(), self.graph.integrals.len(), self.graph.delays[delay].clock);
         let mut before = signal;
@@ -130,7 +135,7 @@ impl Resolver {
         let second = Unit::second(value.span);
         let (declared, unit) = (Some(self.unit(&second)), Some(second.to_string()));
         let clause = Some(crate::source::clause::Clause { allowed, ..crate::source::clause::Clause::new(named, 1) });
-        let value = self.term(value, Place::Plain);
+        let value = self.term(value, Context::Plain);
         Let { name: Name::new(word, value.span), value, declared, unit, clause }
     }
 }

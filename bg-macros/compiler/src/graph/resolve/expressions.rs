@@ -7,7 +7,7 @@ use proc_macro2::Span;
 use super::quantity::scaled;
 use super::samples::DELAY;
 use super::tables::nearest_call;
-use super::{Entity, Place, Resolver};
+use super::{Context, Entity, Resolver};
 use crate::fault::near_miss;
 use crate::graph::term::{Builtin, Lookup, Operation, Reference, Term, TermKind};
 use crate::graph::units::Dimension;
@@ -17,7 +17,7 @@ use crate::source::functions::{self, Function};
 use crate::source::words::table_called;
 
 impl Resolver {
-    pub(super) fn term(&mut self, expression: &Expression, place: Place<'_>) -> Term {
+    pub(super) fn term(&mut self, expression: &Expression, place: Context<'_>) -> Term {
         let span = expression.span;
         let kind = match &expression.kind {
             ExpressionKind::Number(value) => TermKind::Number(*value),
@@ -42,16 +42,16 @@ impl Resolver {
         Term { kind, span }
     }
 
-    fn operation(&mut self, operation: &ast::Operation, place: Place<'_>) -> Operation {
+    fn operation(&mut self, operation: &ast::Operation, place: Context<'_>) -> Operation {
         let &ast::Operation { operator, span, .. } = operation;
         Operation { operator, span, operand: self.term(&operation.operand, place) }
     }
 
-    fn call(&mut self, function: &Name, arguments: &[Expression], place: Place<'_>) -> Term {
+    fn call(&mut self, function: &Name, arguments: &[Expression], place: Context<'_>) -> Term {
         let span = function.span;
         if function.text == DELAY {
             return match place {
-                Place::Instant(clock) if !self.is_outside_of_blocks => {
+                Context::Instant(clock) if !self.is_outside_of_blocks => {
                     let terms = arguments.iter().map(|argument| self.term(argument, place)).collect();
                     self.delayed_by_instants(function, terms, clock)
                 }
@@ -81,13 +81,13 @@ impl Resolver {
         }
         let kind = match (function.text.as_str(), builtin) {
             ("guess", _) => {
-                if !matches!(place, Place::Start | Place::Plain | Place::Let) {
+                if !matches!(place, Context::Start | Context::Plain | Context::Let) {
                     self.fault(span, &GraphFault::GuessOutsideStart);
                 }
                 self.guess(terms.remove(0)).kind
             }
             ("integral", _) => {
-                if place != Place::Observed {
+                if place != Context::Observed {
                     self.fault(span, &GraphFault::IntegralOutsideObserve);
                 }
                 let (value, name) = (terms.remove(0), String::new());
@@ -103,7 +103,7 @@ impl Resolver {
                 TermKind::Integral(self.graph.integrals.len() - 1)
             }
             ("unwrapped", _) => {
-                if !matches!(place, Place::Let | Place::Observed) {
+                if !matches!(place, Context::Let | Context::Observed) {
                     self.fault(span, &GraphFault::UnwrappedElsewhere);
                 }
                 let speed = terms.remove(2);
@@ -139,7 +139,7 @@ impl Resolver {
     }
 
     /// A name: a quantity, a property of one (`pin.flow`), or a component of either (`pin.flow.x`).
-    fn named(&mut self, name: &str, span: Span, place: Place<'_>) -> Term {
+    fn named(&mut self, name: &str, span: Span, place: Context<'_>) -> Term {
         if let Some(reference) = self.quantity(name, place) {
             let reference = self.at_instant(reference, place);
             let term = Term { kind: TermKind::Reference(reference), span };
@@ -171,8 +171,8 @@ impl Resolver {
         Term { kind: TermKind::Number(0.0), span }
     }
 
-    pub(super) fn quantity(&self, name: &str, place: Place<'_>) -> Option<Reference> {
-        if let Place::Law(Some(variable)) = place
+    pub(super) fn quantity(&self, name: &str, place: Context<'_>) -> Option<Reference> {
+        if let Context::Law(Some(variable)) = place
             && variable == name
         {
             return Some(Reference::Variable);

@@ -66,7 +66,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
     resolver.define(source);
     resolver.graph.lets.append(&mut resolver.more);
     resolver.tracks(source);
-    resolver.graph.drawing = source.drawing.map(&mut |quantity| resolver.term(quantity, Place::Plain));
+    resolver.graph.drawing = source.drawing.map(&mut |quantity| resolver.term(quantity, Context::Plain));
     connect::bonds(&mut resolver.graph, &chains, &resolver.names, &resolver.junctions, &mut resolver.faults);
     if resolver.graph.bonds.is_empty() && resolver.faults.is_empty() {
         let name = source.name.text.clone();
@@ -85,7 +85,7 @@ pub fn resolve(source: &ast::Graph) -> Staged<BondGraph> {
 
 /// Where an expression stands, which decides what it may contain.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Place<'a> {
+enum Context<'a> {
     Plain,
     Let,
     Law(Option<&'a str>),
@@ -330,8 +330,8 @@ impl Resolver {
     /// A value that is kept: a `let`, which its state follows.
     fn memory(&mut self, memory: &ast::Memory, own: usize) {
         let kind = ast::ExpressionKind::If(Box::new(memory.following.clone()));
-        let value = self.term(&Expression { kind, span: memory.name.span }, Place::Law(None));
-        let start = memory.start.as_ref().map(|start| self.term(start, Place::Start));
+        let value = self.term(&Expression { kind, span: memory.name.span }, Context::Law(None));
+        let start = memory.start.as_ref().map(|start| self.term(start, Context::Start));
         let (declared, unit) = (Some(self.unit(&memory.unit)), Some(memory.unit.to_string()));
         self.graph.integrals[own].start = start;
         self.graph.integrals[own].follows = Some(self.graph.lets.len());
@@ -345,7 +345,7 @@ impl Resolver {
             match item {
                 Item::Let(definition) => {
                     let first_turn = self.graph.turns.len();
-                    let value = self.term(&definition.value, Place::Let);
+                    let value = self.term(&definition.value, Context::Let);
                     self.name_turns(first_turn, &definition.name.text, &value);
                     let declared = definition.unit.as_ref().map(|unit| self.unit(unit));
                     let unit = definition.unit.as_ref().map(ToString::to_string);
@@ -360,8 +360,8 @@ impl Resolver {
                     self.graph.nodes.push(Node { name: junction.name.clone(), kind, bonds: Vec::new() });
                 }
                 Item::State(state) => {
-                    let rate = self.term(&state.rate, Place::Law(None));
-                    let start = state.start.as_ref().map(|start| self.term(start, Place::Start));
+                    let rate = self.term(&state.rate, Context::Law(None));
+                    let start = state.start.as_ref().map(|start| self.term(start, Context::Start));
                     let known = &mut self.graph.integrals[own];
                     (known.value, known.start) = (rate, start);
                     own += 1;
@@ -380,7 +380,7 @@ impl Resolver {
                     tracks += 1;
                 }
                 Item::Close(close) => {
-                    let gap = self.term(&close.gap, Place::Plain);
+                    let gap = self.term(&close.gap, Context::Plain);
                     let (shape, dimension) = (Shape::Scalar, Dimension::NONE);
                     let joint = self.joint(&close.joint);
                     self.graph.closes.push(Close { joint, gap, shape, dimension });
@@ -410,7 +410,7 @@ impl Resolver {
                 let (track, junction) = (track.name.text.clone(), track.junction.text.clone());
                 self.faults.push(Fault::new(span, &GraphFault::TrackOfNoJunction { track, junction }));
             }
-            let start = track.start.as_ref().map(|start| self.term(start, Place::Start));
+            let start = track.start.as_ref().map(|start| self.term(start, Context::Start));
             let (kind, name) = (track.kind, track.name.clone());
             self.graph.tracks.push(Track { kind, name, junction: one.unwrap_or(NodeId(0)), start });
         }
@@ -421,18 +421,18 @@ impl Resolver {
         let id = NodeId(self.graph.nodes.len());
         self.clauses_fit(element);
         let variable = element.variable.as_ref().map(|variable| variable.name.text.as_str());
-        let law = self.term(&element.law, Place::Law(variable));
+        let law = self.term(&element.law, Context::Law(variable));
         let law = match &element.variable {
             Some(variable) => Law::Of { role: variable.role.unwrap_or(Role::Flow), value: law },
             None => Law::Parameter(law),
         };
-        let frame = element.frame.as_ref().map(|term| self.term(term, Place::Plain));
-        let displacement = element.displacement.as_ref().map(|term| self.term(term, Place::Plain));
-        let start = element.start.as_ref().map(|term| self.term(term, Place::Start));
-        let energy = element.energy.as_ref().map(|term| self.term(term, Place::Law(variable)));
-        let sticking = element.sticking.as_ref().map(|term| self.term(term, Place::Plain));
+        let frame = element.frame.as_ref().map(|term| self.term(term, Context::Plain));
+        let displacement = element.displacement.as_ref().map(|term| self.term(term, Context::Plain));
+        let start = element.start.as_ref().map(|term| self.term(term, Context::Start));
+        let energy = element.energy.as_ref().map(|term| self.term(term, Context::Law(variable)));
+        let sticking = element.sticking.as_ref().map(|term| self.term(term, Context::Plain));
         let [restitution, rest] =
-            [&element.restitution, &element.rest].map(|term| term.as_ref().map(|term| self.term(term, Place::Plain)));
+            [&element.restitution, &element.rest].map(|term| term.as_ref().map(|term| self.term(term, Context::Plain)));
         let stores = matches!(kind, ElementKind::I) || (kind == ElementKind::C && displacement.is_none());
         if stores {
             self.graph.storages.push(Storage::Element(id));
@@ -490,7 +490,7 @@ impl Resolver {
     fn observe(&mut self, observation: &ast::Observation) {
         let first = self.graph.integrals.len();
         let first_turn = self.graph.turns.len();
-        let value = self.term(&observation.value, Place::Observed);
+        let value = self.term(&observation.value, Context::Observed);
         let text = observation.value.to_string();
         let name = observation.name.as_ref().map_or_else(|| text.clone(), |name| name.text.clone());
         let alone = matches!(value.kind, TermKind::Integral(_));

@@ -5,7 +5,7 @@
 
 use bg_units::Unit;
 
-use super::{Place, Resolver};
+use super::{Context, Resolver};
 use crate::fault::Fault;
 use crate::graph::GraphFault;
 use crate::graph::term::{Operation, Term, TermKind};
@@ -34,7 +34,7 @@ impl Resolver {
     /// The value in `unit` of an expression of numbers, some of them with units.
     fn with_units(&mut self, expression: &Expression, unit: Unit) -> Option<f64> {
         let value = in_si(expression)?;
-        let term = self.term(expression, Place::Plain);
+        let term = self.term(expression, Context::Plain);
         let (_, found) = Types::new(&self.graph, &[]).with_pure_numbers(&term, &mut self.faults);
         if let Quantity::Known(found) = found
             && found != unit.dimension
@@ -46,7 +46,7 @@ impl Resolver {
     }
 
     /// A number in a unit. A further symbol of that may not be a name as well: `3 N/m` would have two meanings.
-    pub(super) fn quantity_in(&mut self, value: f64, unit: &ast::Unit, place: Place<'_>) -> TermKind {
+    pub(super) fn quantity_in(&mut self, value: f64, unit: &ast::Unit, place: Context<'_>) -> TermKind {
         for (symbol, _) in unit.factors.iter().skip(1) {
             if self.quantity(&symbol.text, place).is_some() {
                 let (unit, symbol_text) = (unit.to_string(), symbol.text.clone());

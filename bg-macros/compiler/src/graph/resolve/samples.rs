@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Entity, Place, Resolver, Sampled};
+use super::{Context, Entity, Resolver, Sampled};
 use crate::graph::term::{Reference, Term, TermKind};
 use crate::graph::units::Dimension;
 use crate::graph::{Clock, GraphFault, Let};
@@ -58,10 +58,10 @@ impl Resolver {
 
     fn sample(&mut self, sample: &ast::Sample, own: usize, clock: usize) {
         let ast::Sample { name, unit, value, start } = sample;
-        let value = self.term(value, Place::Instant(clock));
+        let value = self.term(value, Context::Instant(clock));
         let held = Term { kind: TermKind::Reference(Reference::Own(own)), span: name.span };
         let value = Term { kind: TermKind::AtInstant(clock, Box::new([value, held])), span: name.span };
-        let start = start.as_ref().map(|start| self.term(start, Place::Start));
+        let start = start.as_ref().map(|start| self.term(start, Context::Start));
         let (declared, unit) = (Some(self.unit(unit)), Some(unit.to_string()));
         let known = &mut self.graph.integrals[own];
         (known.start, known.follows) = (start, Some(self.graph.lets.len()));
@@ -101,8 +101,8 @@ impl Resolver {
 
     /// What stands for a quantity at an instant: for a `let` that depends on samples another one, with their values of
     /// the instant.
-    pub(super) fn at_instant(&mut self, reference: Reference, place: Place<'_>) -> Reference {
-        let (Reference::Let(index), Place::Instant(_)) = (reference, place) else { return reference };
+    pub(super) fn at_instant(&mut self, reference: Reference, place: Context<'_>) -> Reference {
+        let (Reference::Let(index), Context::Instant(_)) = (reference, place) else { return reference };
         if let Some(&known) = self.at_instants.get(&index) {
             return Reference::Let(known);
         }
@@ -144,8 +144,8 @@ impl Resolver {
     }
 
     /// What the name of a sample stands for.
-    pub(super) fn sampled(&self, entity: Entity, place: Place<'_>) -> Option<Reference> {
-        let is_instant = matches!(place, Place::Instant(_));
+    pub(super) fn sampled(&self, entity: Entity, place: Context<'_>) -> Option<Reference> {
+        let is_instant = matches!(place, Context::Instant(_));
         match entity {
             Entity::Sample(index) if is_instant => Some(Reference::Let(self.samples[index].new)),
             Entity::Sample(index) => Some(Reference::Own(self.samples[index].own)),

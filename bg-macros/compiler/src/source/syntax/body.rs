@@ -5,13 +5,13 @@
 use proc_macro2::Delimiter;
 
 use super::{
-    cursor::{Cursor, Parsed, Place},
+    cursor::{Block, Cursor, Parsed},
     statement::OPERATOR,
 };
 use crate::source::ast::{Axis, Body, Expression, ExpressionKind, Name, Shape, Solid};
 
 /// The block of a body.
-pub(super) const BODY: Place = Place {
+pub(super) const BODY: Block = Block {
     name: "a body",
     words: &["cuboid", "cylinder", "sphere", "density", "mass", "center", "inertia", "point", "start"],
     list: false,

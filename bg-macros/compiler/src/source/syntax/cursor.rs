@@ -26,7 +26,7 @@ pub(super) type Parsed<T> = Result<T, Reported>;
 
 /// A kind of block: what it is called and what stands in it.
 #[derive(Debug)]
-pub(in crate::source) struct Place {
+pub(in crate::source) struct Block {
     /// `a graph`, for messages.
     pub name: &'static str,
     /// The words that begin a statement.
@@ -60,7 +60,7 @@ pub(super) struct Cursor<'f> {
     head: usize,
     /// The closing brace; the last token of the macro call.
     close: Span,
-    place: &'static Place,
+    place: &'static Block,
     /// How deeply the current expression is nested.
     pub depth: usize,
     /// The repetition that the name of the present statement asks for, `pin[i in 1..20]`.
@@ -73,7 +73,7 @@ pub(super) type Repetition = [Name; 3];
 
 impl<'f> Cursor<'f> {
     /// A walk over the whole macro call.
-    pub fn new(stream: TokenStream, place: &'static Place, noted: &'f RefCell<Noted>) -> Self {
+    pub fn new(stream: TokenStream, place: &'static Block, noted: &'f RefCell<Noted>) -> Self {
         let tokens = tokens(stream);
         let close = tokens.last().map_or_else(Span::call_site, |last| last.span);
         Self { tokens, at: 0, head: 0, close, place, depth: 0, repetition: None, noted }
@@ -95,7 +95,7 @@ impl<'f> Cursor<'f> {
     }
 
     /// The kind of the block.
-    pub fn place(&self) -> &'static Place {
+    pub fn place(&self) -> &'static Block {
         self.place
     }
 
@@ -158,7 +158,7 @@ impl<'f> Cursor<'f> {
     fn spoken(&self, at: usize) -> Option<Spoken> {
         match self.tokens.get(at) {
             Some(Token { kind: TokenKind::Word(word), span }) => {
-                let Place { name: block, words: beginnings, .. } = self.place;
+                let Block { name: block, words: beginnings, .. } = self.place;
                 Some(Spoken { block, beginnings, word: Name::new(word.clone(), *span) })
             }
             _ => None,
@@ -198,7 +198,7 @@ impl<'f> Cursor<'f> {
     }
 
     /// Enters the group ahead when it has this delimiter.
-    pub fn enter(&mut self, delimiter: Delimiter, place: &'static Place) -> Option<Self> {
+    pub fn enter(&mut self, delimiter: Delimiter, place: &'static Block) -> Option<Self> {
         let inner = match self.peek() {
             Some(TokenKind::Group(group)) if group.delimiter() == delimiter => Self {
                 tokens: tokens(group.stream()),
@@ -217,7 +217,7 @@ impl<'f> Cursor<'f> {
     }
 
     /// Enters the group that must be ahead; `form` shows it to the user.
-    pub fn group(&mut self, delimiter: Delimiter, form: &str, place: &'static Place) -> Parsed<Self> {
+    pub fn group(&mut self, delimiter: Delimiter, form: &str, place: &'static Block) -> Parsed<Self> {
         self.enter(delimiter, place).ok_or_else(|| self.unexpected(form))
     }
 

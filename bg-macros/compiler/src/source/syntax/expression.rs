@@ -9,7 +9,7 @@ use proc_macro2::{Delimiter, Span};
 
 use super::{
     SyntaxFault,
-    cursor::{Cursor, Parsed, Place},
+    cursor::{Block, Cursor, Parsed},
     token::TokenKind,
 };
 use crate::fault::near_miss;
@@ -28,7 +28,7 @@ pub const MOST_NESTED: usize = 100;
 const LONGEST_BASE: usize = 40;
 
 /// Inside of a group in an expression.
-const GROUP: Place = Place { name: "the group", words: &[], list: false };
+const GROUP: Block = Block { name: "the group", words: &[], list: false };
 
 /// Operators that compare or join conditions.
 const CONDITION: [&str; 8] = ["<", "<=", ">", ">=", "==", "!=", "&&", "||"];

@@ -2,26 +2,26 @@
 //!
 //! In: statements of a graph. Out: their [`Item`](crate::source::ast::Item)s.
 
-use super::cursor::{Cursor, Parsed, Place};
+use super::cursor::{Block, Cursor, Parsed};
 use crate::source::ast::{Friction, Name, Orifice, Stop};
 
 /// The block of a friction.
-pub(super) const FRICTION: Place = Place {
+pub(super) const FRICTION: Block = Block {
     name: "a friction",
     words: &["coulomb", "static", "stribeck", "viscous", "normal", "radius", "creep", "stiffness"],
     list: false,
 };
 
 /// The block of a stop.
-pub(super) const STOP: Place = Place {
+pub(super) const STOP: Block = Block {
     name: "a stop",
     words: &["at least", "at most", "stiffness", "damping", "restitution", "rest below", "start"],
     list: false,
 };
 
 /// The block of an orifice.
-pub(super) const ORIFICE: Place =
-    Place { name: "an orifice", words: &["area", "coefficient", "density", "laminar"], list: false };
+pub(super) const ORIFICE: Block =
+    Block { name: "an orifice", words: &["area", "coefficient", "density", "laminar"], list: false };
 
 impl Cursor<'_> {
     /// `friction NAME on TARGET { ... }`

@@ -7,7 +7,7 @@ use proc_macro2::{Delimiter, Span};
 
 use super::{
     SyntaxFault,
-    cursor::{Cursor, Parsed, Place},
+    cursor::{Block, Cursor, Parsed},
     statement::OPERATOR,
 };
 use crate::source::ast::{
@@ -17,10 +17,10 @@ use crate::source::ast::{
 use crate::source::words::{AXES, DRIVES, value_of, word_of};
 
 /// The block of the ground.
-pub(super) const GROUND: Place = Place { name: "`ground`", words: &["point"], list: false };
+pub(super) const GROUND: Block = Block { name: "`ground`", words: &["point"], list: false };
 
 /// The block of a joint.
-pub(super) const JOINT: Place = Place {
+pub(super) const JOINT: Block = Block {
     name: "a joint",
     words: &[
         "stiffness",
@@ -40,16 +40,16 @@ pub(super) const JOINT: Place = Place {
 };
 
 /// The block of a spring.
-pub(super) const SPRING: Place = Place { name: "a spring", words: &["stiffness", "damping", "length"], list: false };
+pub(super) const SPRING: Block = Block { name: "a spring", words: &["stiffness", "damping", "length"], list: false };
 
 /// The block of a speed drive.
-pub(super) const DRIVE: Place = Place { name: "a speed drive", words: &["stiffness", "damping"], list: false };
+pub(super) const DRIVE: Block = Block { name: "a speed drive", words: &["stiffness", "damping"], list: false };
 
 /// The block of a contact.
-pub(super) const CONTACT: Place = Place { name: "a contact", words: &["x", "y", "z"], list: false };
+pub(super) const CONTACT: Block = Block { name: "a contact", words: &["x", "y", "z"], list: false };
 
 /// The block of a contact of shapes.
-pub(super) const SHAPE_CONTACT: Place = Place {
+pub(super) const SHAPE_CONTACT: Block = Block {
     name: "a contact of shapes",
     words: &["stiffness", "exponent", "damping", "dissipation", "restitution", "rest below", "rigid"],
     list: false,
@@ -59,7 +59,7 @@ pub(super) const SHAPE_CONTACT: Place = Place {
 const SHAPES: &[&str] = &["circle", "hole", "sphere", "line", "plane", "segment", "slot", "arc", "profile"];
 
 /// Inside of `(a.P -> b.Q)`.
-const ENDS: Place = Place { name: "the parentheses", words: &[], list: false };
+const ENDS: Block = Block { name: "the parentheses", words: &[], list: false };
 
 /// The kinds of joints.
 const JOINTS: &[&str] = &["revolute", "prismatic", "spherical", "cylindrical", "universal", "fixed"];
@@ -278,7 +278,7 @@ impl Cursor<'_> {
     }
 
     /// `{ ... }`, or `;` when there is nothing to say.
-    pub fn block_or_semicolon(&mut self, place: &'static Place, statement: impl FnMut(&mut Self) -> Parsed<()>) {
+    pub fn block_or_semicolon(&mut self, place: &'static Block, statement: impl FnMut(&mut Self) -> Parsed<()>) {
         match self.enter(Delimiter::Brace, place) {
             Some(mut block) => block.statements(statement),
             None => self.end_statement("`{ ... }`"),

@@ -12,7 +12,7 @@ use crate::fault::{Fault, Staged};
 use crate::source::ast::{Graph, Source};
 use crate::source::drawing::Drawing;
 use crate::source::visibility::Visibility;
-use cursor::{Cursor, Noted, Parsed, Place};
+use cursor::{Block, Cursor, Noted, Parsed};
 
 mod body;
 mod cursor;
@@ -38,11 +38,11 @@ pub use expression::{DEEPEST, MOST_NESTED};
 pub use fault::SyntaxFault;
 
 /// The macro call's outermost level.
-const CALL: Place = Place { name: "the macro call", words: &["graph", "part"], list: false };
+const CALL: Block = Block { name: "the macro call", words: &["graph", "part"], list: false };
 
 /// The blocks whose statements begin with words.
 #[cfg(test)]
-pub(super) const BLOCKS_OF_WORDS: [&Place; 17] = [
+pub(super) const BLOCKS_OF_WORDS: [&Block; 17] = [
     &CALL,
     &statement::GRAPH,
     &statement::PART,

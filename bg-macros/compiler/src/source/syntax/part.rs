@@ -6,7 +6,7 @@ use proc_macro2::{Delimiter, Ident, Punct, Spacing, Span, TokenStream, TokenTree
 
 use super::{
     SyntaxFault,
-    cursor::{Cursor, Parsed, Place, Repetition},
+    cursor::{Block, Cursor, Parsed, Repetition},
     documentation::Documentation,
     statement::{self, OPERATOR},
     token::{TokenKind, joined, tokens},
@@ -20,13 +20,13 @@ use crate::source::visibility::Visibility;
 use crate::source::words::{STARTS, value_of};
 
 /// The block of a use.
-pub(super) const USE: Place = Place { name: "the use of a part", words: &["start"], list: true };
+pub(super) const USE: Block = Block { name: "the use of a part", words: &["start"], list: true };
 
 /// Inside of `[i + 1]`.
-const INDEX: Place = Place { name: "the brackets", words: &[], list: false };
+const INDEX: Block = Block { name: "the brackets", words: &[], list: false };
 
 /// The path of a part of another call.
-const PATH: Place = Place { name: "the path", words: &[], list: false };
+const PATH: Block = Block { name: "the path", words: &[], list: false };
 
 /// The domains in which things meet at an effort, so that a port is a 0-junction where nothing else is said.
 const OF_ONE_EFFORT: [&str; 3] = ["electrical", "hydraulic", "thermal"];

@@ -6,23 +6,23 @@ use proc_macro2::{Delimiter, Span};
 
 use super::{
     SyntaxFault,
-    cursor::{Cursor, Parsed, Place},
+    cursor::{Block, Cursor, Parsed},
     token::TokenKind,
 };
 use crate::source::ast::{Expectation, Item, Name, Observation, Rigid, Scene, Tune, Watch};
 
 /// The block of a scene.
-pub(super) const SCENE: Place = Place {
+pub(super) const SCENE: Block = Block {
     name: "a scene",
     words: &["observe", "tune", "without", "rigid", "all", "dependent", "angles", "expect"],
     list: false,
 };
 
 /// `observe { ... }`
-pub(super) const OBSERVE: Place = Place { name: "`observe`", words: &[], list: true };
+pub(super) const OBSERVE: Block = Block { name: "`observe`", words: &[], list: true };
 
 /// `tune { ... }` and its like.
-const NAMES: Place = Place { name: "the list", words: &[], list: true };
+const NAMES: Block = Block { name: "the list", words: &[], list: true };
 
 /// What a scene can expect.
 const EXPECTATIONS: &[&str] = &["planar", "states", "independent", "integral"];

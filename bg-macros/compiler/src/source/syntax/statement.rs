@@ -6,7 +6,7 @@ use proc_macro2::Delimiter;
 
 use super::{
     SyntaxFault,
-    cursor::{Cursor, Parsed, Place},
+    cursor::{Block, Cursor, Parsed},
     token::TokenKind,
 };
 use crate::fault::near_miss;
@@ -17,10 +17,10 @@ use crate::source::ast::{
 use crate::source::words::{BETWEEN, BEYOND, ELEMENTS, ROLES, TRACKS, value_of};
 
 /// The block of a graph.
-pub(super) const GRAPH: Place = Place { name: "a graph", words: &WORDS, list: false };
+pub(super) const GRAPH: Block = Block { name: "a graph", words: &WORDS, list: false };
 
 /// The block of a part: without scenes, with ports.
-pub(super) const PART: Place = Place { name: "a part", words: WORDS_OF_PART, list: false };
+pub(super) const PART: Block = Block { name: "a part", words: WORDS_OF_PART, list: false };
 
 /// The words of a part: those of a graph without the last one, with the port's in place of the scene's.
 const WORDS_OF_PART: &[&str] = {
@@ -80,10 +80,10 @@ const WORDS: [&str; 43] = [
 ];
 
 /// The block of a clock.
-pub(super) const EVERY: Place = Place { name: "`every`", words: &["sample"], list: false };
+pub(super) const EVERY: Block = Block { name: "`every`", words: &["sample"], list: false };
 
 /// Inside of `[3]` and `(effort u)`.
-const GROUP: Place = Place { name: "the group", words: &[], list: false };
+const GROUP: Block = Block { name: "the group", words: &[], list: false };
 
 /// What may follow an expression, besides `;`.
 pub(super) const OPERATOR: &str = "an operator";

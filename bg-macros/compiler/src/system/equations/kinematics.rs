@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 
 use super::EquationFault;
-use super::signals::{Place, Signals};
+use super::signals::{Layout, Signals};
 use super::unknowns::number;
 use crate::expr::{Environment, Id, Pool, Symbol, derivative, evaluate, magnitudes, same_polynomial, substitute};
 use crate::fault::Fault;
@@ -50,7 +50,7 @@ impl Signals<'_> {
     /// The rates of all poses in terms of these flows.
     fn track_seeds(&mut self) -> BTreeMap<Symbol, Id> {
         let mut seeds = BTreeMap::new();
-        for Place { storage, components, .. } in self.layout.clone() {
+        for Layout { storage, components, .. } in self.layout.clone() {
             let Storage::Track(index) = storage else { continue };
             let flow = self.given_flows[&self.graph.tracks[index].junction].clone();
             let rate = self.track_rate(storage, &flow);
@@ -88,7 +88,7 @@ impl Signals<'_> {
 
     /// The rates of the displacements of C, which the place of a stop may be.
     fn add_displacements(&mut self, seeds: &mut BTreeMap<Symbol, Id>) {
-        for Place { storage, components, .. } in self.layout.clone() {
+        for Layout { storage, components, .. } in self.layout.clone() {
             let Storage::Element(node) = storage else { continue };
             if self.graph.element(node).is_some_and(|element| element.kind == ElementKind::C) {
                 let bond = self.graph.node(node).bonds[0];

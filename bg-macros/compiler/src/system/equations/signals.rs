@@ -27,7 +27,7 @@ use crate::system::equations::solution::Solution;
 
 /// The states of a storage.
 #[derive(Clone, Debug)]
-pub(super) struct Place {
+pub(super) struct Layout {
     pub storage: Storage,
     pub shape: Shape,
     /// Its components that are states, and the state of each: all, unless others determine some of them.
@@ -50,7 +50,7 @@ pub(super) struct Signals<'a> {
     pub(super) given_flows: BTreeMap<NodeId, Value>,
     pub(super) states: Vec<State>,
     /// The states of every storage, in their order.
-    pub(super) layout: Vec<Place>,
+    pub(super) layout: Vec<Layout>,
     pub(super) first_integral: usize,
     /// The states of angles that count turns, by their number.
     pub(super) turns: BTreeMap<usize, usize>,
@@ -226,7 +226,7 @@ impl<'a> Signals<'a> {
                 self.states.push(State { name, unit: unit.clone(), origin, start: zero, rate: zero });
             }
             if !components.is_empty() {
-                self.layout.push(Place { storage, shape, components });
+                self.layout.push(Layout { storage, shape, components });
             }
         }
         let mut multipliers = 0;
@@ -498,7 +498,7 @@ impl<'a> Signals<'a> {
     /// What makes orientations such again: one step.
     fn projections(&mut self) -> Vec<(usize, Id)> {
         let mut projections = Vec::new();
-        for Place { storage, components, .. } in
+        for Layout { storage, components, .. } in
             self.layout.clone().into_iter().filter(|place| place.shape == Shape::Matrix)
         {
             let Some(turned) = self.state(storage) else { continue };

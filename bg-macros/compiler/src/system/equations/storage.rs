@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use super::EquationFault;
 use super::Origin;
 use super::requirements::is_rotation;
-use super::signals::{Place, Signals, orthogonalized};
+use super::signals::{Layout, Signals, orthogonalized};
 use crate::expr::{Id, Node, Symbol, antiderivative, derivative, substitute};
 use crate::fault::Fault;
 use crate::graph::{BondGraph, Element, ElementKind, Law, NodeId, Storage, Term, TrackKind};
@@ -53,7 +53,7 @@ fn is_compliance(graph: &BondGraph, node: NodeId) -> bool {
 impl Signals<'_> {
     /// Every state's rate.
     pub(super) fn rates(&mut self) {
-        for Place { storage, components, .. } in self.layout.clone() {
+        for Layout { storage, components, .. } in self.layout.clone() {
             let rate = match storage {
                 Storage::Element(node) => {
                     let bond = self.graph.node(node).bonds[0];
@@ -93,7 +93,7 @@ impl Signals<'_> {
     /// Every state's value at t = 0.
     pub(super) fn starts(&mut self) {
         let graph = self.graph;
-        for Place { storage, shape, components } in self.layout.clone() {
+        for Layout { storage, shape, components } in self.layout.clone() {
             let (term, orientation) = match storage {
                 Storage::Element(node) => (graph.element(node).and_then(|element| element.start.as_ref()), false),
                 Storage::Track(index) => {

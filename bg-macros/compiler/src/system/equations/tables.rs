@@ -45,14 +45,14 @@ impl Signals<'_> {
             Value(std::iter::once(pool.number(origin)).chain(patches).collect())
         });
         let columns: Vec<Value> = columns.collect();
-        let column = self.chosen(&table.name, Place::Line(arguments[0]), &knots[0], &columns).0;
+        let column = self.chosen(&table.name, Stretch::Line(arguments[0]), &knots[0], &columns).0;
         let cells = origins[1].iter().zip(column[1..].chunks_exact(16));
         let cells: Vec<Value> = cells
             .map(|(&origin, patch)| {
                 Value(std::iter::once(self.pool.number(origin)).chain(patch.iter().copied()).collect())
             })
             .collect();
-        let cell = self.chosen(&table.name, Place::Line(arguments[1]), &knots[1], &cells).0;
+        let cell = self.chosen(&table.name, Stretch::Line(arguments[1]), &knots[1], &cells).0;
         let along = [(arguments[0], column[0]), (arguments[1], cell[0])].map(|(of, origin)| self.pool.sub(of, origin));
         let powers: Vec<Id> = cell[1..].chunks_exact(4).map(|row| self.polynomial(row, 0, along[1])).collect();
         self.polynomial(&powers, 0, along[0])
@@ -106,7 +106,7 @@ impl Signals<'_> {
         let parts: Vec<Value> = table.pieces.iter().map(|piece| coefficients(pool, piece, of(piece))).collect();
         let (chosen, along) = match table.period {
             None => {
-                let chosen = self.chosen(&table.name, Place::Line(argument), &table.knots, &parts).0;
+                let chosen = self.chosen(&table.name, Stretch::Line(argument), &table.knots, &parts).0;
                 let along = self.pool.sub(argument, chosen[0]);
                 (chosen, along)
             }
@@ -121,7 +121,7 @@ impl Signals<'_> {
     fn in_period(&mut self, table: &Table, period: Period, argument: Id, parts: &[Value]) -> (Vec<Id>, Id) {
         let turn = std::f64::consts::TAU / period.length;
         let angle = self.pool.scale(turn, argument);
-        let place = Place::Turn([Function::Sin, Function::Cos].map(|of| self.pool.call(of, &[angle])), turn);
+        let place = Stretch::Turn([Function::Sin, Function::Cos].map(|of| self.pool.call(of, &[angle])), turn);
         let (first, second) = table.knots.split_at(period.half);
         let (early, late) = parts.split_at(period.half);
         let early = self.chosen(&table.name, place, &first[1..], early);
@@ -135,11 +135,11 @@ impl Signals<'_> {
     }
 
     /// One of two parts, by whether the argument is before a knot; in a turn, less than half a turn before it.
-    fn before(&mut self, name: &str, place: Place, knot: f64, below: &Value, above: &Value) -> Value {
+    fn before(&mut self, name: &str, place: Stretch, knot: f64, below: &Value, above: &Value) -> Value {
         let condition = format!("argument of {name} < {knot}");
         let sides = match place {
-            Place::Line(argument) => (argument, self.pool.number(knot)),
-            Place::Turn([sine, cosine], turn) => {
+            Stretch::Line(argument) => (argument, self.pool.number(knot)),
+            Stretch::Turn([sine, cosine], turn) => {
                 let (by_sine, by_cosine) = (turn * knot).sin_cos();
                 let distance = self.pool.linear(0.0, &[(sine, by_cosine), (cosine, -by_sine)]);
                 (distance, self.pool.zero())
@@ -149,7 +149,7 @@ impl Signals<'_> {
     }
 
     /// The part between whose knots the argument is.
-    fn chosen(&mut self, name: &str, place: Place, knots: &[f64], parts: &[Value]) -> Value {
+    fn chosen(&mut self, name: &str, place: Stretch, knots: &[f64], parts: &[Value]) -> Value {
         if knots.is_empty() {
             return parts[0].clone();
         }
@@ -219,7 +219,7 @@ impl Signals<'_> {
 
 /// Where the argument of a table is.
 #[derive(Clone, Copy)]
-enum Place {
+enum Stretch {
     /// On a line.
     Line(Id),
     /// In a turn: sine and cosine of an angle, and that angle over the argument.

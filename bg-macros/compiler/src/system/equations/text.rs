@@ -3,7 +3,7 @@
 //! In: the derivation's graph. Out: one line for every bond variable, one for every state, one for what was solved.
 
 use super::dependent::Way;
-use super::signals::{Place, Signals};
+use super::signals::{Layout, Signals};
 use super::unknowns::Unknown;
 use crate::expr::{Id, Symbol, text as expression_text};
 use crate::graph::{BondId, ElementKind, End, Law, NodeId, NodeKind, Role, Storage, TrackKind};
@@ -192,7 +192,7 @@ fn balance(signals: &Signals<'_>, node: NodeId, bond: BondId, role: Role) -> Str
     if text.is_empty() { "0".to_owned() } else { text }
 }
 
-fn rate(signals: &Signals<'_>, place: &Place) -> String {
+fn rate(signals: &Signals<'_>, place: &Layout) -> String {
     match place.storage {
         Storage::Element(node) => {
             let definition = signals.graph.node(node);

@@ -6,7 +6,7 @@
 //! negative (Wensing, Kim, Slotine 2018, Linear Matrix Inequalities for Physically-Consistent Inertial Parameter
 //! Identification, IEEE Robotics and Automation Letters 3).
 
-use super::fault::Kind;
+use super::fault::Demand;
 use crate::expr::{Function, Id, Node, Pool};
 use crate::graph::Allowed;
 use crate::system::Value;
@@ -46,7 +46,7 @@ pub(super) struct Condition {
     pub component: Option<char>,
     pub wanted: &'static str,
     pub help: &'static str,
-    pub fault: Kind,
+    pub fault: Demand,
 }
 
 /// What is asked of a value.
@@ -107,7 +107,7 @@ fn numbers(value: &Value, allowed: Allowed) -> Vec<Condition> {
         component,
         wanted,
         help,
-        fault: Kind::Number,
+        fault: Demand::Number,
     })
     .collect()
 }
@@ -118,7 +118,7 @@ fn fraction(pool: &mut Pool, value: Id) -> Vec<Condition> {
     let rest = pool.linear(1.0, &[(value, -1.0)]);
     let below = Condition { is_strict: false, is_shown: true, ..of_matrix(value, wanted, help) };
     let above = Condition { value: rest, is_shown: false, ..below.clone() };
-    [below, above].map(|condition| Condition { fault: Kind::Stop, ..condition }).into()
+    [below, above].map(|condition| Condition { fault: Demand::Stop, ..condition }).into()
 }
 
 /// Above 0 and below 1.
@@ -127,17 +127,17 @@ fn part(pool: &mut Pool, value: Id) -> Vec<Condition> {
     let rest = pool.linear(1.0, &[(value, -1.0)]);
     let above = Condition { is_shown: true, ..of_matrix(value, wanted, help) };
     let below = Condition { value: rest, is_shown: false, ..above.clone() };
-    [above, below].map(|condition| Condition { fault: Kind::Stop, ..condition }).into()
+    [above, below].map(|condition| Condition { fault: Demand::Stop, ..condition }).into()
 }
 
 fn clearance(pool: &mut Pool, value: Id) -> Condition {
     let value = pool.linear(BEYOND, &[(value, 1.0)]);
     let (wanted, help) = ("must not be beyond its end", "start between the ends of the stop");
-    Condition { is_strict: false, fault: Kind::Stop, ..of_matrix(value, wanted, help) }
+    Condition { is_strict: false, fault: Demand::Stop, ..of_matrix(value, wanted, help) }
 }
 
 fn of_matrix(value: Id, wanted: &'static str, help: &'static str) -> Condition {
-    Condition { value, is_strict: true, is_shown: false, component: None, wanted, help, fault: Kind::Matrix }
+    Condition { value, is_strict: true, is_shown: false, component: None, wanted, help, fault: Demand::Matrix }
 }
 
 fn symmetric(pool: &mut Pool, matrix: &Value) -> Condition {
@@ -229,7 +229,7 @@ fn rotation(pool: &mut Pool, matrix: &Value) -> Vec<Condition> {
         (orthogonal, "must be a rotation: its columns are not perpendicular to each other and of length 1"),
         (determinant, "must be a rotation, not a mirror image"),
     ]
-    .map(|(value, wanted)| Condition { fault: Kind::Orientation, ..of_matrix(value, wanted, help) })
+    .map(|(value, wanted)| Condition { fault: Demand::Orientation, ..of_matrix(value, wanted, help) })
     .into()
 }
 

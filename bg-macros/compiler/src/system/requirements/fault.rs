@@ -5,7 +5,7 @@ use crate::fault::Explain;
 
 /// What a value that cannot be is.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub(super) enum Kind {
+pub(super) enum Demand {
     Number,
     Matrix,
     Orientation,
@@ -23,10 +23,10 @@ pub struct RequirementFault<'a> {
 impl Explain for RequirementFault<'_> {
     fn code(&self) -> &'static str {
         match self.requirement.fault {
-            Kind::Number => "BG0701",
-            Kind::Matrix => "BG0702",
-            Kind::Orientation => "BG0703",
-            Kind::Stop => "BG0704",
+            Demand::Number => "BG0701",
+            Demand::Matrix => "BG0702",
+            Demand::Orientation => "BG0703",
+            Demand::Stop => "BG0704",
         }
     }
 

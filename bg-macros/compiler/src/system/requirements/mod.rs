@@ -44,7 +44,7 @@ pub struct Requirement {
     /// Whether 0 is too little.
     pub is_strict: bool,
     help: &'static str,
-    fault: fault::Kind,
+    fault: fault::Demand,
     span: Span,
     /// Requirements of one subject have the same number: the first that fails is the one to speak of.
     group: usize,

@@ -63,7 +63,7 @@ const MANY: usize = 24;
 
 /// The methods, the more implicit ones later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Kind {
+enum Implicitness {
     Explicit,
     Partitioned,
     Implicit,
@@ -73,15 +73,15 @@ enum Kind {
 macro_rules! of {
     (($($borrow:tt)+) $auto:expr, $kind:expr, $method:ident => $then:expr) => {
         match $kind {
-            Kind::Explicit => {
+            Implicitness::Explicit => {
                 let $method = $($borrow)+ $auto.explicit;
                 $then
             }
-            Kind::Partitioned => {
+            Implicitness::Partitioned => {
                 let $method = $($borrow)+ $auto.partitioned;
                 $then
             }
-            Kind::Implicit => {
+            Implicitness::Implicit => {
                 let $method = $($borrow)+ $auto.implicit;
                 $then
             }
@@ -96,7 +96,7 @@ macro_rules! present {
     };
 }
 
-impl Kind {
+impl Implicitness {
     const ALL: [Self; 3] = [Self::Explicit, Self::Partitioned, Self::Implicit];
 
     /// That of the method of this name; none where it is none of them.
@@ -134,7 +134,7 @@ pub struct Auto {
     explicit: Race,
     partitioned: Ark5,
     implicit: Radau9,
-    kind: Kind,
+    kind: Implicitness,
     /// Whether the next attempt is the first from the end of an accepted step: after a restart, short steps are tried
     /// that only look for a guard's sign.
     is_fresh: bool,
@@ -179,7 +179,7 @@ pub struct Auto {
 /// end.
 #[derive(Clone, Debug)]
 struct Claim {
-    kind: Kind,
+    kind: Implicitness,
     /// How many times as long it is as the step that was in sight.
     longer: f64,
     /// The time of its end, s.
@@ -225,7 +225,7 @@ impl Auto {
             explicit,
             partitioned: Ark5::new(),
             implicit: Radau9::new(),
-            kind: Kind::Explicit,
+            kind: Implicitness::Explicit,
             is_fresh: false,
             since: 0,
             wait: WAIT[0],
@@ -256,16 +256,16 @@ impl Auto {
     /// the system does not have, is no hint.
     #[must_use]
     pub fn beginning_with(method: Integrator) -> Self {
-        let kind = Kind::of(method);
+        let kind = Implicitness::of(method);
         let wait = if kind.is_some() { WAIT[1] } else { WAIT[0] };
         let explicit = Race::beginning_with(Some(method));
         let told = explicit.name();
-        Self { kind: kind.unwrap_or(Kind::Explicit), wait, told, explicit, hint: Some(method), ..Self::new() }
+        Self { kind: kind.unwrap_or(Implicitness::Explicit), wait, told, explicit, hint: Some(method), ..Self::new() }
     }
 
     /// What a step of the method of a kind costs beside one that its worth was measured with.
-    fn dearness(&self, kind: Kind) -> f64 {
-        if kind == Kind::Explicit { self.explicit.dearness() } else { 1.0 }
+    fn dearness(&self, kind: Implicitness) -> f64 {
+        if kind == Implicitness::Explicit { self.explicit.dearness() } else { 1.0 }
     }
 
     /// The median of the last accepted steps, s.
@@ -293,7 +293,7 @@ impl Auto {
         self.tried = self.typical();
         let is_cut_off = self.cut_off >= CUT_OFF;
         for kind in self.kind.others(scale.relative, flow.states()) {
-            if is_cut_off && kind == Kind::Partitioned {
+            if is_cut_off && kind == Implicitness::Partitioned {
                 continue;
             }
             if kind < self.kind && self.succeeds(kind, flow, start, h, scale) {
@@ -308,9 +308,9 @@ impl Auto {
 
     /// Whether a step of a more implicit method meets the tolerances that is worth its cost. It takes over, or has to
     /// be confirmed.
-    fn reaches(&mut self, kind: Kind, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    fn reaches(&mut self, kind: Implicitness, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         // Twice as long as it has to be where what it costs varies as much as what the present one does.
-        let gain = if kind == Kind::Partitioned { 2.0 } else { 1.0 };
+        let gain = if kind == Implicitness::Partitioned { 2.0 } else { 1.0 };
         let longer = gain * kind.worth(self.kind, flow.states()) / self.dearness(self.kind);
         let (h, mut x) = (longer * h, core::mem::take(&mut self.claimed));
         x.copy_from_slice(start.x);
@@ -333,7 +333,7 @@ impl Auto {
 
     /// Whether steps of a less implicit method meet the tolerances from `start` over the step `h` (s) of the present
     /// one. Each of them is twice as long as it has to be to be worth a change, so that the choice does not swing.
-    fn succeeds(&mut self, kind: Kind, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
+    fn succeeds(&mut self, kind: Implicitness, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale) -> bool {
         let h = 2.0 * h * self.dearness(kind) / self.kind.worth(kind, flow.states());
         let (mut from, mut end) = (core::mem::take(&mut self.trial), core::mem::take(&mut self.end));
         from.note(start);
@@ -367,8 +367,9 @@ impl Auto {
         let agrees = scale.norm_of(&x, |i| self.claimed[i] - x[i]) <= AGREEMENT;
         (self.before, self.end) = (before, x);
         if agrees && self.noise(flow, start, scale) < NOISE {
-            let kind = if claim.kind == Kind::Partitioned && self.is_stiff_throughout(flow, start, since, scale) {
-                Kind::Implicit
+            let kind = if claim.kind == Implicitness::Partitioned && self.is_stiff_throughout(flow, start, since, scale)
+            {
+                Implicitness::Implicit
             } else {
                 claim.kind
             };
@@ -395,7 +396,7 @@ impl Auto {
         let longer = core::iter::successors(Some(h), |h| Some(2.0 * h)).take(DOUBLINGS);
         let is_met = |h: &f64| partitioned.attempt(flow, start, *h, scale, end) <= 1.0 && is_finite(end);
         let longest = longer.take_while(is_met).last().unwrap_or(h);
-        let h = Kind::Implicit.worth(Kind::Partitioned, flow.states()) * longest;
+        let h = Implicitness::Implicit.worth(Implicitness::Partitioned, flow.states()) * longest;
         implicit.attempt(flow, start, h, scale, end) <= 1.0 && is_finite(end)
     }
 
@@ -415,7 +416,7 @@ impl Auto {
     }
 
     /// Another method takes over at time `t` (s).
-    fn change(&mut self, kind: Kind, t: f64, reason: Reason) {
+    fn change(&mut self, kind: Implicitness, t: f64, reason: Reason) {
         let doubt = &mut self.doubt[self.kind as usize];
         *doubt = if self.stint < STINT { (4 * *doubt).min(WAIT[1]) } else { WAIT[0] };
         self.wait = *doubt;
@@ -432,7 +433,7 @@ impl Auto {
     /// Remembers that the present method makes the steps from time `t` (s) on, and why.
     fn tell(&mut self, t: f64, reason: Reason) {
         let method = self.name();
-        if self.kind == Kind::Explicit {
+        if self.kind == Implicitness::Explicit {
             self.told = method;
         }
         if self.changes.len() < REMEMBERED {
@@ -469,8 +470,8 @@ impl Method for Auto {
         if self.is_fresh {
             self.confirm(flow, start, scale);
         }
-        if self.kind == Kind::Partitioned && self.hurried >= HURRIED {
-            self.change(Kind::Implicit, start.t, Reason::Switches);
+        if self.kind == Implicitness::Partitioned && self.hurried >= HURRIED {
+            self.change(Implicitness::Implicit, start.t, Reason::Switches);
         }
         if self.is_due(h) {
             self.try_others(flow, start, h, scale);
@@ -481,10 +482,10 @@ impl Method for Auto {
             self.before.note(start);
         }
         let error = present!((&mut) self, method => method.attempt(flow, start, h, scale, end));
-        if self.kind == Kind::Implicit {
+        if self.kind == Implicitness::Implicit {
             return error;
         }
-        if self.kind == Kind::Explicit && self.explicit.ahead().is_some_and(|ahead| ahead != self.told) {
+        if self.kind == Implicitness::Explicit && self.explicit.ahead().is_some_and(|ahead| ahead != self.told) {
             let lead = self.explicit.lead();
             self.tell(start.t, if lead > 1.0 { Reason::Further(lead) } else { Reason::First });
         }
@@ -493,7 +494,7 @@ impl Method for Auto {
         if is_met || h > LAST * self.longest || !self.goes_on(flow, start, h, scale) {
             return error;
         }
-        self.change(Kind::Implicit, start.t, Reason::GoesOn);
+        self.change(Implicitness::Implicit, start.t, Reason::GoesOn);
         self.implicit.attempt(flow, start, h, scale, end)
     }
 
@@ -515,7 +516,7 @@ impl Method for Auto {
         self.cut_off += u32::from(self.claim.take().is_some());
         self.hurried = if self.since_event <= HURRY { self.hurried + 1 } else { 0 };
         self.since_event = 0;
-        for kind in Kind::ALL {
+        for kind in Implicitness::ALL {
             of!((&mut) self, kind, method => method.restart());
         }
     }

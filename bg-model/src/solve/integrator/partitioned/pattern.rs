@@ -21,18 +21,18 @@ const KEPT: f64 = 0.1;
 const WEAK: f64 = 0.025;
 
 /// A row and a column.
-type Place = (usize, usize);
+type RowColumn = (usize, usize);
 
 /// The places of a Jacobian.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Pattern {
     /// Row and column of each entry.
-    places: Vec<Place>,
+    places: Vec<RowColumn>,
     /// The entries in places that mirror each other, with the place of the first one, those of displacements and
     /// orientations left out; one on the diagonal mirrors itself.
-    mirrored: Vec<(usize, usize, Place)>,
+    mirrored: Vec<(usize, usize, RowColumn)>,
     /// The dampers that count in a step, as squares of 1/s.
-    dampers: Vec<(Place, f64)>,
+    dampers: Vec<(RowColumn, f64)>,
     /// Of each state whether it is chosen; to be written by each choice.
     damped: Vec<bool>,
 }
@@ -84,7 +84,7 @@ impl Pattern {
             }
         }
         // On along weaker dampers: a part of what one damper holds together would err more than all of it.
-        let is_at_edge = |damped: &[bool], (row, column): Place| damped[row] != damped[column];
+        let is_at_edge = |damped: &[bool], (row, column): RowColumn| damped[row] != damped[column];
         while let Some(&((row, column), _)) = dampers.iter().find(|(place, _)| is_at_edge(damped, *place)) {
             (damped[row], damped[column]) = (true, true);
         }

@@ -45,7 +45,7 @@ pub(super) struct Crossing<'a> {
 
 /// A part of a step: its start and its size, s.
 #[derive(Clone, Copy)]
-struct Part {
+struct Substep {
     t: f64,
     h: f64,
 }
@@ -146,9 +146,9 @@ impl<'a> Back<'a> {
         None
     }
 
-    fn part(&self, step: Crossing<'_>, part: u32) -> Part {
+    fn part(&self, step: Crossing<'_>, part: u32) -> Substep {
         let h = (step.to - step.from) / f64::from(self.parts);
-        Part { t: step.from + f64::from(part) * h, h }
+        Substep { t: step.from + f64::from(part) * h, h }
     }
 
     /// Follows a step backwards: replaces the `weights` of the state at its end by those of the state at its start.
@@ -238,7 +238,7 @@ impl<'a> Back<'a> {
     }
 
     /// Replaces the state by that at the end of one part; gives the norm of its error.
-    fn forwards(&mut self, negative: &[bool], Part { t, h }: Part, x: &mut [f64]) -> f64 {
+    fn forwards(&mut self, negative: &[bool], Substep { t, h }: Substep, x: &mut [f64]) -> f64 {
         let mut statistics = Statistics::default();
         let flow = Flow::new(self.model, negative, &mut statistics);
         flow.rate(t, x, &mut self.rate);
@@ -250,7 +250,7 @@ impl<'a> Back<'a> {
     /// Replaces the weights of the state at the end of one part, whose stages are known, by those of the state at its
     /// start.
     #[inline(always)]
-    fn backwards(&mut self, negative: &[bool], Part { t, h }: Part, is_whole: bool, by_end: &mut [f64]) {
+    fn backwards(&mut self, negative: &[bool], Substep { t, h }: Substep, is_whole: bool, by_end: &mut [f64]) {
         self.transposed.begin(h, by_end);
         for stage in (0..DormandPrince::END).rev() {
             let t = t + DormandPrince::C[stage] * h;
@@ -288,7 +288,7 @@ pub(super) fn add(to: &mut [f64], other: &[f64]) {
 struct Backwards<'b, 'a> {
     back: &'b mut Back<'a>,
     negative: &'b [bool],
-    part: Part,
+    part: Substep,
     is_whole: bool,
     weights: &'b mut [f64],
 }

@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 use super::animation::Animation;
-use bg_analysis::linear::{Mode, Part};
+use bg_analysis::linear::{Mode, Participation};
 use bg_analysis::samples::{DIGITS, rounded};
 
 /// Modes and what they swing about.
@@ -59,7 +59,7 @@ fn amplitudes(mode: &Mode, stem: &str) -> [[f64; 2]; 3] {
     ["x", "y", "z"].map(|axis| {
         let name = format!("{stem}_{axis}");
         let part = mode.shape.iter().find(|part| part.name == name);
-        let of = |Part { magnitude, phase, .. }: &Part| {
+        let of = |Participation { magnitude, phase, .. }: &Participation| {
             [magnitude * phase.cos(), magnitude * phase.sin()].map(|value| rounded(value, DIGITS))
         };
         part.map_or([0.0; 2], of)

@@ -34,7 +34,7 @@ pub(crate) use check::{check_one, prepare};
 pub use counts::Counts;
 pub use difference::Difference;
 pub use file::{Files, Golden, Record, Tolerance, Tolerances};
-pub(crate) use record::{Place, Recorded};
+pub(crate) use record::{Destination, Recorded};
 pub use run::RunFault;
 
 use crate::ask::inputs::InputSettingError;

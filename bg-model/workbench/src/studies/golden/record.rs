@@ -20,14 +20,14 @@ use crate::run::recipe::{input_files, quantities};
 
 /// A place for a golden output, which can be written.
 #[derive(Debug)]
-pub(crate) struct Place {
+pub(crate) struct Destination {
     files: Files,
     model: &'static str,
     /// The tolerances that are there.
     known: Tolerances,
 }
 
-impl Place {
+impl Destination {
     /// Claims NAME.toml and NAME.csv in `folder`, which is made if it is not there, for the model called `model`.
     pub fn claim(folder: &Path, name: &str, model: &'static str) -> Result<Self, GoldenError> {
         let mut components = Path::new(name).components();
@@ -118,7 +118,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let file = root.path().join("file");
         fs::write(&file, "x").unwrap();
-        let fault = |folder: &Path, name| Place::claim(folder, name, "Slide").unwrap_err().to_string();
+        let fault = |folder: &Path, name| Destination::claim(folder, name, "Slide").unwrap_err().to_string();
         let (shown, below) = (file.display(), file.join("below"));
         let expected = format!("cannot write into {}: {shown} is a file; choose a folder with --out", below.display());
         assert_eq!(fault(&below, "x"), expected);

@@ -47,20 +47,20 @@ pub struct Errors {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Kind {
+enum QuantityKind {
     Pose,
     Momentum,
     Force,
 }
 
 /// The kind of a quantity of this unit, if its errors count.
-fn kind(unit: Unit) -> Option<Kind> {
+fn kind(unit: Unit) -> Option<QuantityKind> {
     let kinds = [
-        ("m", Kind::Pose),
-        ("rad", Kind::Pose),
-        ("kg*m/s", Kind::Momentum),
-        ("kg*m^2/s", Kind::Momentum),
-        ("N", Kind::Force),
+        ("m", QuantityKind::Pose),
+        ("rad", QuantityKind::Pose),
+        ("kg*m/s", QuantityKind::Momentum),
+        ("kg*m^2/s", QuantityKind::Momentum),
+        ("N", QuantityKind::Force),
     ];
     let is_like = |known: &str| {
         let known: Unit = known.parse().expect("a unit");
@@ -91,7 +91,7 @@ impl Errors {
         }
         for matrix in outputs.chunk_by(|a, b| a.of == b.of).filter(|components| is_orientation(components)) {
             if matrix.iter().all(|component| reference.has(component.name)) {
-                differences[Kind::Pose as usize].extend(rotations(&ours, reference, matrix)?);
+                differences[QuantityKind::Pose as usize].extend(rotations(&ours, reference, matrix)?);
             }
         }
         let [poses, momenta, forces] = differences.map(|errors| measure(&errors));

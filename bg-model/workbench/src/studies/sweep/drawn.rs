@@ -13,7 +13,7 @@ use bg_model::run::Request;
 use super::SweepError;
 use super::design::Layout;
 use super::distribution::Drawn;
-use super::folder::{Folder, Kind};
+use super::folder::{Folder, ShardFile};
 use super::plan::Plan;
 use super::shown::tables;
 use super::statistics::{Estimate, Index, Spread, indices, spread};
@@ -119,7 +119,7 @@ fn read(folder: &Folder, plan: &Plan<'_>) -> Result<(Vec<Column>, usize), SweepE
     let mut failed = 0;
     let swept = &plan.design.names;
     let is_all = matches!(plan.design.layout(), Layout::Drawn(_));
-    for table in tables(folder, Kind::Runs)? {
+    for table in tables(folder, ShardFile::Runs)? {
         let table = table?;
         let units = table.texts.iter().find(|(name, _)| name == "units").map_or("{}", |(_, text)| text);
         let units: std::collections::BTreeMap<String, String> = serde_json::from_str(units).unwrap_or_default();

@@ -65,14 +65,14 @@ pub enum FolderError {
 
 /// What a file of a shard has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum ShardFile {
     /// A row for each run.
     Runs,
     /// A row for each sample.
     Trajectories,
 }
 
-impl Kind {
+impl ShardFile {
     const fn name(self) -> &'static str {
         match self {
             Self::Runs => "runs",
@@ -196,12 +196,12 @@ impl Folder {
     #[must_use]
     pub fn has(&self, shard: usize, with_trajectories: bool) -> bool {
         let is_ours = |table: Table| table.texts.iter().any(|(name, text)| name == SAID && *text == self.recipe);
-        let is_there = !with_trajectories || self.has_file(Kind::Trajectories, shard);
-        is_there && self.read(Kind::Runs, shard).is_ok_and(|table| table.is_some_and(is_ours))
+        let is_there = !with_trajectories || self.has_file(ShardFile::Trajectories, shard);
+        is_there && self.read(ShardFile::Runs, shard).is_ok_and(|table| table.is_some_and(is_ours))
     }
 
     /// Whether there is a file of this name.
-    fn has_file(&self, kind: Kind, shard: usize) -> bool {
+    fn has_file(&self, kind: ShardFile, shard: usize) -> bool {
         count(&self.counters.names, 1);
         self.path.join(kind.file(shard)).exists()
     }
@@ -210,14 +210,14 @@ impl Folder {
     /// are: processes that begin one after the other also end so, but shards are looked for in another order.
     #[must_use]
     pub fn is_complete(&self, shards: usize) -> bool {
-        scattered(shards).all(|shard| self.has_file(Kind::Runs, shard))
+        scattered(shards).all(|shard| self.has_file(ShardFile::Runs, shard))
     }
 
     /// A file of a shard; none where it is not there.
     ///
     /// # Errors
     /// It is there and cannot be read.
-    pub fn read(&self, kind: Kind, shard: usize) -> Result<Option<Table>, FolderError> {
+    pub fn read(&self, kind: ShardFile, shard: usize) -> Result<Option<Table>, FolderError> {
         let path = self.path.join(kind.file(shard));
         let file = fs::read(&path);
         count(&self.counters.names, 1);
@@ -233,7 +233,7 @@ impl Folder {
     ///
     /// # Errors
     /// It cannot be written.
-    pub fn write(&self, kind: Kind, shard: usize, table: &Table) -> Result<(), FileError> {
+    pub fn write(&self, kind: ShardFile, shard: usize, table: &Table) -> Result<(), FileError> {
         let (path, bytes) = (self.path.join(kind.file(shard)), table.bytes());
         count(&self.counters.names, OF_A_FILE);
         count(&self.counters.written, bytes.len() as u64);
@@ -247,7 +247,7 @@ impl Folder {
     /// Removes what earlier processes left on their way to the recipe and to the files of so many shards, which are
     /// there now. The whole folder is listed.
     pub fn clear(&self, shards: usize) {
-        let of_shard = |shard: usize| [Kind::Runs, Kind::Trajectories].map(|kind| kind.file(shard));
+        let of_shard = |shard: usize| [ShardFile::Runs, ShardFile::Trajectories].map(|kind| kind.file(shard));
         let names: BTreeSet<String> = (0..shards).flat_map(of_shard).chain([RECIPE.to_owned()]).collect();
         for entry in fs::read_dir(&self.path).into_iter().flatten().flatten() {
             count(&self.counters.listed, 1);
@@ -322,9 +322,9 @@ mod tests {
         let texts = vec![(SAID.to_owned(), folder.recipe.clone())];
         let table = Table { columns: vec![Column { name: "run".to_owned(), values: Values::Whole(vec![0]) }], texts };
         assert!(!folder.has(2, false));
-        folder.write(Kind::Runs, 2, &table).unwrap();
+        folder.write(ShardFile::Runs, 2, &table).unwrap();
         assert!(folder.has(2, false) && !folder.has(2, true) && !folder.has(1, false));
-        folder.write(Kind::Trajectories, 2, &table).unwrap();
+        folder.write(ShardFile::Trajectories, 2, &table).unwrap();
         assert!(folder.has(2, true));
         assert!(!of("t_end = 2.0").has(2, false), "it is one of another sweep");
     }

@@ -38,7 +38,7 @@ use thiserror::Error;
 
 use crate::files::FileError;
 use crate::program::Program;
-use folder::{Folder, FolderError, Kind};
+use folder::{Folder, FolderError, ShardFile};
 use plan::{Plan, PlanError};
 use runs::{Done, Job};
 
@@ -207,9 +207,9 @@ fn all(
 fn written(job: &Job<'_>, folder: &Folder, shard: usize, done: &[Done]) -> Result<(), SweepError> {
     let first = job.runs_of(shard).start;
     if job.has_trajectories() {
-        folder.write(Kind::Trajectories, shard, &job.trajectories(first, done))?;
+        folder.write(ShardFile::Trajectories, shard, &job.trajectories(first, done))?;
     }
-    Ok(folder.write(Kind::Runs, shard, &job.table(first, done))?)
+    Ok(folder.write(ShardFile::Runs, shard, &job.table(first, done))?)
 }
 
 #[cfg(test)]

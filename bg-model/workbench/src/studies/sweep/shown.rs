@@ -5,7 +5,7 @@
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
 
-use super::folder::{Folder, FolderError, Kind};
+use super::folder::{Folder, FolderError, ShardFile};
 use super::recipe::{INPUT_FILES, INPUTS};
 use crate::files::parquet::{Table, Values};
 
@@ -33,7 +33,7 @@ impl Progress {
     /// A file cannot be read.
     pub fn of(folder: &Folder) -> Result<Self, FolderError> {
         let mut found = Self { recipe: folder.entries()?, shards: 0, runs: 0, failed: 0, reasons: Vec::new() };
-        for table in tables(folder, Kind::Runs)? {
+        for table in tables(folder, ShardFile::Runs)? {
             found.shards += 1;
             found.count(&table?);
         }
@@ -98,7 +98,7 @@ impl Display for Progress {
 ///
 /// # Errors
 /// A file cannot be read, or `writer` fails.
-pub fn write_csv(folder: &Folder, kind: Kind, writer: impl Write) -> io::Result<()> {
+pub fn write_csv(folder: &Folder, kind: ShardFile, writer: impl Write) -> io::Result<()> {
     let mut csv = csv::Writer::from_writer(writer);
     let mut has_header = false;
     for table in tables(folder, kind).map_err(io::Error::other)? {
@@ -116,7 +116,7 @@ pub fn write_csv(folder: &Folder, kind: Kind, writer: impl Write) -> io::Result<
 ///
 /// # Errors
 /// A file cannot be read.
-pub fn joined(folder: &Folder, kind: Kind) -> Result<Table, FolderError> {
+pub fn joined(folder: &Folder, kind: ShardFile) -> Result<Table, FolderError> {
     let mut all = Table::default();
     for table in tables(folder, kind)? {
         all.append(table?);
@@ -154,7 +154,7 @@ fn whole(recipe: &toml::Table, name: &str) -> usize {
 /// The tables that are there, in the order of the shards.
 pub(super) fn tables(
     folder: &Folder,
-    kind: Kind,
+    kind: ShardFile,
 ) -> Result<impl Iterator<Item = Result<Table, FolderError>>, FolderError> {
     let recipe = folder.entries()?;
     let shards = whole(&recipe, "runs").div_ceil(whole(&recipe, "shard").max(1));
