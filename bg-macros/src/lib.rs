@@ -1,5 +1,6 @@
-//! The procedural macro `bond_graph!`. Its documentation is the reference of the language, a page of `docs/language` for each
-//! chapter; users get the macro as `bg_model::bond_graph`, together with what generated code needs at run time.
+//! The procedural macro `bond_graph!`. Its documentation is the reference of the language, a page of `docs/language`
+//! for each chapter; users get the macro as `bg_model::bond_graph`, together with what generated code needs at run
+//! time.
 
 extern crate proc_macro;
 

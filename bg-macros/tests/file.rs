@@ -45,7 +45,8 @@ fn faults_say_line_and_column_in_the_file() {
 fn a_table_may_stand_in_a_file() {
     let graph = |points: &str| {
         format!(
-            "graph Coil {{ table flux: A -> Wb = {points}; 1 wire: electrical; R coil(i) = flux(i) / (1 s); I core = 2; wire -> coil; wire -> core; }}"
+            "graph Coil {{ table flux: A -> Wb = {points}; 1 wire: electrical; R coil(i) = flux(i) / (1 s); \
+            I core = 2; wire -> coil; wire -> core; }}"
         )
     };
     let of_file =

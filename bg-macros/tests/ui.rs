@@ -1,7 +1,7 @@
 //! What a user sees: the messages of the compiler at their tokens, and nothing of rustc's besides.
 //!
-//! Each file of `ui/` has one faulty graph and uses the items that it promises; `accepted/` has the same without a fault.
-//! Renewed by `MESSAGES=overwrite`.
+//! Each file of `ui/` has one faulty graph and uses the items that it promises; `accepted/` has the same without a
+//! fault. Renewed by `MESSAGES=overwrite`.
 
 use std::env;
 use std::fs;

@@ -1,5 +1,5 @@
-//! The examples of the language's reference, which is the documentation of [`bond_graph!`](crate::bond_graph): they are tested
-//! here, where the macro has what its code needs.
+//! The examples of the language's reference, which is the documentation of [`bond_graph!`](crate::bond_graph): they are
+//! tested here, where the macro has what its code needs.
 
 #[doc = include_str!("../../bg-macros/docs/language/README.md")]
 #[doc = include_str!("../../bg-macros/docs/language/statements.md")]

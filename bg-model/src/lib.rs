@@ -83,9 +83,9 @@
 //!
 //! # Without `std`
 //!
-//! With `default-features = false` and the feature `macros` the crate needs an allocator only, and lacks the modules `extended`, `run` and
-//! `sensitivity`. A run has the same bits; a start that closes joints, and algebraic loops that are not linear, are the
-//! same to rounding.
+//! With `default-features = false` and the feature `macros` the crate needs an allocator only, and lacks the modules
+//! `extended`, `run` and `sensitivity`. A run has the same bits; a start that closes joints, and algebraic loops that
+//! are not linear, are the same to rounding.
 //!
 //! # Conventions
 //!

@@ -12,8 +12,10 @@ use bg_model::statistics::Statistics;
 bond_graph! {
     /// A block on a stiff spring, shaken; its contact resists its two directions differently, with a jump between them.
     graph Block {
-        param mass: kg = 1, above 0; param stiffness: N/m = 400, at least 0; param cut: N*s/m = 5; param drop: N = -0.05; param start: m = 0.5;
-        1 slide: translation; I block = mass; C spring = stiffness start start; MSe shaker = 3 * sin(2 * t) * exp(-0.1 * t);
+        param mass: kg = 1, above 0; param stiffness: N/m = 400, at least 0; param cut: N*s/m = 5;
+        param drop: N = -0.05; param start: m = 0.5;
+        1 slide: translation; I block = mass; C spring = stiffness start start;
+        MSe shaker = 3 * sin(2 * t) * exp(-0.1 * t);
         R saw(v) = if v < 0 { cut * v - drop } else { 0.4 * v + drop };
         shaker -> slide -> block; slide -> spring; slide -> saw;
         observe { x: m = spring.q; v: m/s = slide.flow; force: N = saw.effort; lost: J = integral(dissipated_power) }
@@ -26,13 +28,17 @@ bond_graph! {
     }
     /// A double pendulum on springs, its second joint much stiffer.
     graph Arms {
-        param stiffness: N/m = 1e5; param damping: N*s/m = 20; param spin: rad/s = 1; param gravity: m/s^2 = 9.81; param turn: N*m/rad = 1e3; param drag: N*m*s/rad = 1; param rub: N*m*s/rad = 1;
+        param stiffness: N/m = 1e5; param damping: N*s/m = 20; param spin: rad/s = 1; param gravity: m/s^2 = 9.81;
+        param turn: N*m/rad = 1e3; param drag: N*m*s/rad = 1; param rub: N*m*s/rad = 1;
         gravity [0, -gravity, 0];
         ground { point pivot = [0, 0, 0]; }
-        body upper { cuboid [0.6, 0.03, 0.03] density 7850; point a = [-0.3, 0, 0]; point b = [0.3, 0, 0]; start a at [0, 0, 0]; start spin [0, 0, spin]; }
+        body upper { cuboid [0.6, 0.03, 0.03] density 7850; point a = [-0.3, 0, 0]; point b = [0.3, 0, 0];
+            start a at [0, 0, 0]; start spin [0, 0, spin]; }
         body lower { cuboid [0.4, 0.02, 0.02] density 7850; point b = [-0.2, 0, 0]; start b at [0.6, 0, 0]; }
-        joint shoulder: revolute z (ground.pivot -> upper.a) { stiffness stiffness; damping damping; tilt stiffness turn; tilt damping drag; }
-        joint elbow: revolute z (upper.b -> lower.b) { stiffness 10 * stiffness; damping damping; tilt stiffness turn; tilt damping drag; }
+        joint shoulder: revolute z (ground.pivot -> upper.a) { stiffness stiffness; damping damping;
+            tilt stiffness turn; tilt damping drag; }
+        joint elbow: revolute z (upper.b -> lower.b) { stiffness 10 * stiffness; damping damping; tilt stiffness turn;
+            tilt damping drag; }
         drive brake on elbow torque = if elbow.speed < 0 { -rub * elbow.speed } else { -0.2 * rub * elbow.speed };
         observe { angle: rad = upper.angle; other: rad = lower.angle; force: N = elbow.force.x }
         scenes only;
@@ -44,7 +50,8 @@ bond_graph! {
         gravity [0, -gravity, 0];
         ground { point pivot = [0, 0, 0]; }
         body rod {
-            cuboid [0.6, 0.03, 0.03] density 7850; point end = [-0.3, 0, 0]; start end at [0, 0, 0]; start turned rotation_z(angle);
+            cuboid [0.6, 0.03, 0.03] density 7850; point end = [-0.3, 0, 0]; start end at [0, 0, 0];
+            start turned rotation_z(angle);
             start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin];
         }
         joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
@@ -57,9 +64,14 @@ bond_graph! {
     graph Crank {
         param angle: rad = 1; param spin: rad/s = -8; param drag: N*s/m = 2;
         ground { point O = [0, 0, 0]; }
-        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin]; }
-        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.3, 0, 0]; point c = [0.3, 0, 0]; start b at [0.2 * cos(angle), 0.2 * sin(angle), 0]; start turned rotation_z(guess(-0.3)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
-        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0]; start velocity [guess(0), guess(0), 0]; }
+        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0];
+            start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0];
+            start spin [0, 0, spin]; }
+        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.3, 0, 0]; point c = [0.3, 0, 0];
+            start b at [0.2 * cos(angle), 0.2 * sin(angle), 0]; start turned rotation_z(guess(-0.3));
+            start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
+        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0];
+            start velocity [guess(0), guess(0), 0]; }
         joint pin_o: revolute z (ground.O -> crank.a) { rigid; }
         joint pin_a: revolute z (crank.b -> link.b) { rigid; }
         joint pin_b: revolute z (link.c -> slider) { rigid; }
@@ -73,9 +85,14 @@ bond_graph! {
     graph Folding {
         param angle: rad = 1; param spin: rad/s = -8; param drag: N*s/m = 2;
         ground { point O = [0, 0, 0]; }
-        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin]; }
-        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.1, 0, 0]; point c = [0.1, 0, 0]; start b at [0.2 * cos(angle), 0.2 * sin(angle), 0]; start turned rotation_z(guess(-1)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(8)]; }
-        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.2), 0, 0]; start velocity [guess(0), guess(0), 0]; }
+        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0];
+            start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0];
+            start spin [0, 0, spin]; }
+        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.1, 0, 0]; point c = [0.1, 0, 0];
+            start b at [0.2 * cos(angle), 0.2 * sin(angle), 0]; start turned rotation_z(guess(-1));
+            start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(8)]; }
+        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.2), 0, 0];
+            start velocity [guess(0), guess(0), 0]; }
         joint pin_o: revolute z (ground.O -> crank.a) { rigid; }
         joint pin_a: revolute z (crank.b -> link.b) { rigid; }
         joint pin_b: revolute z (link.c -> slider) { rigid; }
@@ -103,8 +120,10 @@ bond_graph! {
     }
     /// A mass whose damper knows no speed above a limit.
     graph Fragile {
-        param mass: kg = 1, above 0; param limit: m/s = 3; param stiffness: N/m = 40; param damping: N*s/m = 0.1; param unit: m/s = 1;
-        1 slide: translation; I body = mass; C spring = stiffness start 0.3; R damper(v) = damping * v * sqrt((limit - v) / unit);
+        param mass: kg = 1, above 0; param limit: m/s = 3; param stiffness: N/m = 40; param damping: N*s/m = 0.1;
+        param unit: m/s = 1;
+        1 slide: translation; I body = mass; C spring = stiffness start 0.3;
+        R damper(v) = damping * v * sqrt((limit - v) / unit);
         slide -> body; slide -> spring; slide -> damper;
         observe { x: m = spring.q; v: m/s = slide.flow }
     }
@@ -150,8 +169,8 @@ fn single<Me: Mechanism>(model: &Me, request: &Request, values: &[f64]) -> Resul
     Ok(Simulation::of(&model, request.clone()).run()?)
 }
 
-/// Makes runs with values of these parameters between two ends, side by side and each by itself; gives what the runs give and how
-/// many of them fail.
+/// Makes runs with values of these parameters between two ends, side by side and each by itself; gives what the runs
+/// give and how many of them fail.
 fn compared<Me: Mechanism>(model: &Me, request: &Request, between: &[(&str, [f64; 2])]) -> (Vec<Trajectory>, usize) {
     const RUNS: usize = 19;
     let table = Me::Parameters::table();

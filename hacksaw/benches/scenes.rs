@@ -79,8 +79,8 @@ fn main() {
     }
     print!("{}", table(&rows));
     println!(
-        "\nLargest deviation: of any output from the literal model's, over the largest value of its kind (1 where that is \
-         less), rtol 1e-8, 51 instants (of 5 s; free-run: of 1 s, after which it is chaotic).\n\
+        "\nLargest deviation: of any output from the literal model's, over the largest value of its kind (1 where that \
+         is less), rtol 1e-8, 51 instants (of 5 s; free-run: of 1 s, after which it is chaotic).\n\
          By hand: planar models in body poses; accelerations agree with the paper's scene to {disagreement:.1e}.\n\
          Paper's scene over by hand: plain {:.0} % (goal: at most {:.0} %), tuned {:.0} %.",
         100.0 * least[0] / by_hand[0],

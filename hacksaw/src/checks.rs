@@ -194,8 +194,8 @@ impl Data<'_> {
             figure: "Fig. 14, 15",
             statement: "The frame moves downward with the guide.",
             measured: format!(
-                "C4 is {descent:.4} m lower in the mean of the second half than at the start; the frame swings by {swing:.4} rad, \
-                 the guide with it within {apart:.4} rad"
+                "C4 is {descent:.4} m lower in the mean of the second half than at the start; \
+                 the frame swings by {swing:.4} rad, the guide with it within {apart:.4} rad"
             ),
             holds: descent > MOVING && apart < TOGETHER * swing,
         })
@@ -218,7 +218,8 @@ impl Data<'_> {
         let (peak, after) = (largest(&h[..early]), largest(&h[settled..]));
         let measured = if settled < h.len() {
             format!(
-                "from rest to |h5_z| = {peak:.3} N m s in the first {START} s; later, in the second half, {after:.3} at most"
+                "from rest to |h5_z| = {peak:.3} N m s in the first {START} s; \
+                later, in the second half, {after:.3} at most"
             )
         } else {
             format!("from rest to |h5_z| = {peak:.3} N m s in the first {START} s; the run ends before it settles")

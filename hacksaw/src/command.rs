@@ -28,7 +28,8 @@ pub fn program() -> Program {
     program
         .version(env!("CARGO_PKG_VERSION"))
         .about(
-            "Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says about them",
+            "Simulates the five-link power hacksaw of the paper, draws its Figures 4 to 19 and checks what it says \
+            about them",
         )
         .scene("paper")
         .extras(Paper)

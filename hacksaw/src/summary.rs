@@ -90,7 +90,8 @@ fn largest_gap(run: &Recording) -> Option<(String, f64)> {
     largest
 }
 
-/// The mean of the crank's speed, its least and its largest value, rad/s, and from when on, s; none where it is no output.
+/// The mean of the crank's speed, its least and its largest value, rad/s, and from when on, s; none where it is no
+/// output.
 fn crank_speed(run: &Recording) -> Option<([f64; 3], f64)> {
     let column = run.columns.iter().find(|column| column.name == "crank_speed")?;
     let settled = run.times.partition_point(|&t| t < SETTLED);

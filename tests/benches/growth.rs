@@ -1,9 +1,10 @@
 //! How a model and its build grow with the number of links: prints a table.
 //!
-//! `cargo bench -p bond-graph-tests --bench growth [-- --largest N] [WORD]`, for chains of 2, 4, 8 .. N links (16 unless said), of all
-//! kinds or those whose name contains the word. Each chain becomes a program of one file, in a package of its own under the target
-//! folder, with the profiles of this repository; its dependencies are built before. CPU time and memory are those of cargo with all its
-//! processes. Times of a rate and so on are minima of many batches at the start state, in that program.
+//! `cargo bench -p bond-graph-tests --bench growth [-- --largest N] [WORD]`, for chains of 2, 4, 8 .. N links (16
+//! unless said), of all kinds or those whose name contains the word. Each chain becomes a program of one file, in a
+//! package of its own under the target folder, with the profiles of this repository; its dependencies are built before.
+//! CPU time and memory are those of cargo with all its processes. Times of a rate and so on are minima of many batches
+//! at the start state, in that program.
 #![allow(missing_docs)]
 
 use std::fmt::Write as _;
@@ -91,7 +92,8 @@ fn prepare(chains: &[(&Kind, usize)]) {
     let workspace = fs::read_to_string(Path::new(ROOT).join("Cargo.toml")).expect("the workspace's manifest");
     let profiles = workspace.find("[profile.release]").map_or("", |at| &workspace[at..]);
     let manifest = format!(
-        "[package]\nname = \"growth\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\nbg-model = {{ path = '{ROOT}/bg-model' }}\n\n{profiles}"
+        "[package]\nname = \"growth\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\nbg-model = {{ path = \
+        '{ROOT}/bg-model' }}\n\n{profiles}"
     );
     write("Cargo.toml", &manifest);
     write("src/bin/none.rs", "use bg_model as _;\nfn main() {}\n");

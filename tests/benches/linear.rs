@@ -88,10 +88,12 @@ where
     println!("{}: {N} states, {} entries, {factors} factors; ns", model.description().name, entries.len());
     println!("  rate {rate:.0}, jacobian {jacobian:.0}");
     println!(
-        "  eliminate {eliminate:.0}, complex {eliminate_complex:.0}; substitute {substitute:.0}, complex {substitute_complex:.0}"
+        "  eliminate {eliminate:.0}, complex {eliminate_complex:.0}; substitute {substitute:.0}, complex \
+        {substitute_complex:.0}"
     );
     println!(
-        "  nalgebra's LU: SMatrix {fixed:.0}, complex {fixed_complex:.0}; DMatrix {dynamic:.0}, complex {dynamic_complex:.0}; solve {solve:.0}"
+        "  nalgebra's LU: SMatrix {fixed:.0}, complex {fixed_complex:.0}; \
+        DMatrix {dynamic:.0}, complex {dynamic_complex:.0}; solve {solve:.0}"
     );
 }
 

@@ -211,8 +211,8 @@ fn functions_of_the_reference_are_those_of_the_language() {
 /// What calls a table.
 const OF_TABLES: &str = "\
 | `NAME(a)`, `NAME(a, b)` of a [table][tables] | Its value there. | as declared | `torque: N*m = curve(pin.speed);` |
-| `NAME.derivative(a)`, `NAME.second_derivative(a)` | Those of a table by its argument. | value per argument, and again | \
-`slope: N*m*s/rad = curve.derivative(pin.speed);` |
+| `NAME.derivative(a)`, `NAME.second_derivative(a)` | Those of a table by its argument. | value per argument, and \
+again | `slope: N*m*s/rad = curve.derivative(pin.speed);` |
 ";
 
 fn row(function: &Function) -> String {
@@ -254,7 +254,8 @@ fn compatible(version: &str) -> Vec<&str> {
     numbers[..count].to_vec()
 }
 
-/// All workspaces here have one target folder in `.ci/run`: with other versions the compiler is built once more for each.
+/// All workspaces here have one target folder in `.ci/run`: with other versions the compiler is built once more for
+/// each.
 #[test]
 fn workspaces_have_the_same_versions() {
     let locked = locked();

@@ -1,4 +1,5 @@
-//! The grammar for editors gives words their colours: run by VS Code's own engine, vscode-textmate, where node and npm are.
+//! The grammar for editors gives words their colours: run by VS Code's own engine, vscode-textmate, where node and npm
+//! are.
 //!
 //! npm fetches the engine into a folder of the build; where it cannot, there is nothing to run.
 
@@ -126,7 +127,8 @@ fn every_example_is_read_to_its_end() {
 fn the_body_of_the_macro_is_coloured_in_rust_and_nothing_after_it() {
     let Some(engine) = engine() else { return };
     let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("in_rust.rs");
-    let text = "// bond_graph! { body no { } }\nbond_graph! {\n    graph Pair { body rod { mass 2; } }\n}\nfn mass() { body rod }\n";
+    let text = "// bond_graph! { body no { } }\nbond_graph! {\n    graph Pair { body rod { mass 2; \
+        } }\n}\nfn mass() { body rod }\n";
     fs::write(&file, text).expect("a file");
     let (words, _) = words(engine, RUST, &file);
     let bond = |(_, _, scopes): &&Word| scopes.iter().any(|scope| scope == BOND);

@@ -18,7 +18,8 @@ bond_graph! {
         param /*rate*/rate: N/m = 3000;
         body /*foot*/foot { mass 1; inertia [1, 1, 1]; point /*tip*/tip = [0.1, 0, 0]; }
         ground { point /*floor*/floor = [0, 0, 0]; }
-        spring /*knee*/knee (ground./*floor in knee*/floor -> /*foot in knee*/foot./*tip in knee*/tip) { stiffness /*rate in knee*/rate; damping 10; length 0.1; }
+        spring /*knee*/knee (ground./*floor in knee*/floor -> /*foot in knee*/foot./*tip in knee*/tip) { stiffness \
+        /*rate in knee*/rate; damping 10; length 0.1; }
         observe { /*way*/way: m = /*foot in way*/foot.position.x }
     }
 
@@ -47,7 +48,8 @@ bond_graph! {
         part /*pair*/pair: /*GearPair*/GearPair { /*ratio in pair*/ratio = 4; }
         table /*curve*/curve: rad/s -> N*m = [[0, 2], [50, 1]], /*held*/held;
         1 /*hub*/hub: rotation; I /*wheel*/wheel = 2;
-        /*pin in chain*/pin.spin -> /*pair in chain*/pair.first; /*pair again in chain*/pair.second -> /*hub in chain*/hub -> wheel;
+        /*pin in chain*/pin.spin -> /*pair in chain*/pair.first; /*pair again in chain*/pair.second -> /*hub in \
+        chain*/hub -> wheel;
 
         observe {
             /*angle*/angle: rad = /*rod in observe*/rod.angle;
@@ -55,7 +57,8 @@ bond_graph! {
             /*left in observe*/left./*way in observe*/way;
             /*pair in observe*/pair./*torque in observe*/torque;
             left_over: N*m = /*curve in observe*/curve(/*abs*/abs(hub.flow)) * /*sin*/sin(/*t*/t / 1 s);
-            slope: N*m*s/rad = /*curve again in observe*/curve./*derivative*/derivative(/*delay*/delay(hub.flow, 20 ms));
+            slope: N*m*s/rad = /*curve again in observe*/curve./*derivative*/derivative(/*delay*/delay(hub.flow, 20 \
+            ms));
             high: m = /*row in observe*/row[1]./*foot in observe*/foot./*tip in observe*/tip.position.y;
         }
 

@@ -1,8 +1,8 @@
-//! What rust-analyzer knows of names inside of `bond_graph!`, asked over its protocol as an editor asks: hover, definition,
-//! references, rename, completion.
+//! What rust-analyzer knows of names inside of `bond_graph!`, asked over its protocol as an editor asks: hover,
+//! definition, references, rename, completion.
 //!
-//! Where there is no rust-analyzer on the path, it says so and asks nothing: `rustup component add rust-analyzer`. Its first run
-//! builds the macro for it, into a target folder of its own.
+//! Where there is no rust-analyzer on the path, it says so and asks nothing: `rustup component add rust-analyzer`. Its
+//! first run builds the macro for it, into a target folder of its own.
 
 mod client;
 mod colours;
@@ -131,7 +131,8 @@ fn an_editor_knows_the_names() {
     offered(&mut editor);
 }
 
-/// Nothing is wrong with the names. Without the standard library's sources rust-analyzer mistakes types outside of them.
+/// Nothing is wrong with the names. Without the standard library's sources rust-analyzer mistakes types outside of
+/// them.
 fn faults(editor: &mut Editor) {
     let found = editor.diagnostics();
     let items = found["items"].as_array().expect("a list");
@@ -197,7 +198,8 @@ fn offered(editor: &mut Editor) {
         let labels: Vec<&str> = items.filter_map(|item| item["label"].as_str()?.split('(').next()).collect();
         let missing: Vec<_> = words.iter().filter(|word| !labels.contains(word)).collect();
         assert!(missing.is_empty(), "`{new}` offers {labels:?}, not {missing:?}");
-        // Functions are offered wherever names are, and after a part the names that are everywhere, which its type has, too.
+        // Functions are offered wherever names are, and after a part the names that are everywhere, which its type has,
+        // too.
         let is_other =
             |label: &&&str| !words.contains(label) && functions::named(label).is_none() && !EVERYWHERE.contains(label);
         let others = labels.iter().filter(is_other).count();

@@ -47,7 +47,8 @@ const DEEP: &str = "deep";
 const MECHANISM: [(&str, &str); 18] = [
     (
         "BG0201",
-        "body rod { sphere radius 1; density 1; }\njoint pin: fixed (ground -> ▸rodd) { stiffness 1; tilt stiffness 1; }",
+        "body rod { sphere radius 1; density 1; }\njoint pin: fixed (ground -> ▸rodd) { stiffness 1; tilt stiffness 1; \
+        }",
     ),
     (
         "BG0202",
@@ -84,7 +85,8 @@ const MECHANISM: [(&str, &str); 18] = [
     ("BG0214", "1 j: translation; I m = 2; j -> m; stop end on j { at most 2; stiffness ▸1e4; restitution 0.5; }"),
     (
         "BG0231",
-        "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground plane y -> ball circle 0.1) { stiffness 1e5; }",
+        "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground plane y -> ball circle 0.1) { stiffness 1e5; \
+        }",
     ),
     (
         "BG0232",
@@ -92,7 +94,8 @@ const MECHANISM: [(&str, &str); 18] = [
     ),
     (
         "BG0233",
-        "table lift: rad -> m = [[0, 1], [3, 2], [6, 1]], spline, periodic;\nbody ball { sphere radius 0.1; density 1; }\n\
+        "table lift: rad -> m = [[0, 1], [3, 2], [6, 1]], spline, periodic;\nbody ball { sphere radius 0.1; density 1; \
+        }\n\
          contact c (ground profile ▸lit -> ball circle 0.1) { stiffness 1e5; }",
     ),
     (
@@ -167,12 +170,14 @@ const CAUSALITY: [(&str, &str); 4] = [
 const EQUATIONS: [(&str, &str); 16] = [
     (
         "BG0501",
-        "Se e = 1; 1 j: translation; param g: m/N^3/s = 1; R a = 1; 0 k; R b(effort e) = g * hold.effort * e * e; e -> j -> a; j -> ▸k -> b;
+        "Se e = 1; 1 j: translation; param g: m/N^3/s = 1; R a = 1; 0 k; R b(effort e) = g * hold.effort * e * e; \
+        e -> j -> a; j -> ▸k -> b;
          1 l: translation; I m = 2; rSe hold = 0; l -> m; l -> hold;",
     ),
     (
         "BG0502",
-        "Se f = 1; 1 j: rotation; 1 k: translation; TF g(w) = 2 * w ▸* w; I m = 2; C c(x) = 2 * x; f -> j -> m; j -> g -> k -> c;",
+        "Se f = 1; 1 j: rotation; 1 k: translation; TF g(w) = 2 * w ▸* w; I m = 2; C c(x) = 2 * x; f -> j -> m; \
+        j -> g -> k -> c;",
     ),
     ("BG0503", "Se f = 1; 1 j: translation; I m = 2; C s(q) = 3 ▸* exp(sin(q / 1)); f -> j -> m; j -> s;"),
     ("BG0504", "Se f = 1; 1 j: translation; I m = 2; C s(q) = 3 * q energy 3 * q ▸* q; f -> j -> m; j -> s;"),
@@ -208,7 +213,11 @@ const EQUATIONS: [(&str, &str); 16] = [
          friction ▸rub on guide { coulomb 0.3; normal guide.force.y; }",
     ),
     ("BG0516", "Sf drum = 1; 1 j: translation; R ▸rub(v) = 2 holds 3; drum -> j -> rub;"),
-    ("BG0518", "param T: s = 1; param F: N = 1; let a: rad = ▸unwrapped(t, T, 1 / T); MSe f = a * F; 1 j: translation; I m = 2; f -> j -> m;"),
+    (
+        "BG0518",
+        "param T: s = 1; param F: N = 1; let a: rad = ▸unwrapped(t, T, 1 / T); MSe f = a * F; 1 j: translation; \
+        I m = 2; f -> j -> m;",
+    ),
     ("BG0517", "Sf drum = 1; 1 j: translation; drum -> j; stop ▸end on j { at most 2; restitution 0.5; }"),
 ];
 
@@ -238,7 +247,8 @@ const MORE: [(&str, &str); 73] = [
     ("BG0113", "every 1 ms { sample ▸a = 2; }"),
     (
         "BG0345",
-        "every 2 ms { sample a: m/s = delay(j.flow, ▸5 ms); } 1 j: translation; I m = 2; MSe f = 1 N*s/m * a; f -> j -> m;",
+        "every 2 ms { sample a: m/s = delay(j.flow, ▸5 ms); } 1 j: translation; I m = 2; MSe f = 1 N*s/m * a; \
+        f -> j -> m;",
     ),
     ("BG0316", "every ▸1 m { sample a: 1 = 2; } 1 j: translation; I m = 2; MSe f = 1 N * a; f -> j -> m;"),
     (
@@ -252,7 +262,8 @@ const MORE: [(&str, &str); 73] = [
     ),
     (
         "BG0339",
-        "table ▸c: rad -> N*m = [[0, 1], [1, 2], [2, 3]], periodic; 1 j: rotation; I m = 2; C k(q) = c(q); j -> m; j -> k;",
+        "table ▸c: rad -> N*m = [[0, 1], [1, 2], [2, 3]], periodic; 1 j: rotation; I m = 2; C k(q) = c(q); j -> m; \
+        j -> k;",
     ),
     (
         "BG0234",
@@ -275,11 +286,13 @@ const MORE: [(&str, &str); 73] = [
     ),
     (
         "BG0704",
-        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground line x -> ball circle 0.1) { stiffness 1e5; restitution ▸1; }",
+        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground line x -> ball circle 0.1) { stiffness 1e5; \
+        restitution ▸1; }",
     ),
     (
         "BG0203",
-        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; }\n\
+        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; \
+        }\n\
          friction ▸rub on c { coulomb 0.2; }",
     ),
     (
@@ -303,7 +316,8 @@ const MORE: [(&str, &str); 73] = [
     ),
     (
         "BG0231",
-        "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground arc 0.3 from 0 to 1 -> ball) { stiffness 1e5; }",
+        "body ball { sphere radius 0.1; density 1; }\ncontact ▸c (ground arc 0.3 from 0 to 1 -> ball) { stiffness 1e5; \
+        }",
     ),
     (
         "BG0701",
@@ -312,7 +326,8 @@ const MORE: [(&str, &str); 73] = [
     ),
     (
         "BG0213",
-        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; }\n\
+        "body ball { sphere radius 0.1; density 1; }\ncontact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; \
+        }\n\
          stop end on ▸c { at most 1; stiffness 1e4; }",
     ),
     ("BG0102", "1 j: translation; I m = 2; j -> m; memory last: m/s = j.flow▸;"),
@@ -324,7 +339,8 @@ const MORE: [(&str, &str); 73] = [
     ),
     (
         "BG0306",
-        "table c: m, V -> N = [[0, 1], [0, 1, 2], [1, 2, 3]];\n1 j: translation; I m = 2; MSe f = ▸c(k.q); C k(q) = 2 * q; f -> j -> m; j -> k;",
+        "table c: m, V -> N = [[0, 1], [0, 1, 2], [1, 2, 3]];\n1 j: translation; I m = 2; MSe f = ▸c(k.q); \
+        C k(q) = 2 * q; f -> j -> m; j -> k;",
     ),
     ("BG0102", "1 slide ▸translation; I m = 2; slide -> m;"),
     ("BG0102", "let stiffness ▸N = 2;\n1 slide: translation; I m = 2; slide -> m;"),
@@ -419,18 +435,21 @@ const SCENES: [(&str, &str); 12] = [
     ("BG0609", "Se f = 1; 1 j: translation; I m = 2; f -> j -> m; ▸scenes only;"),
     (
         "BG0610",
-        "param a: N = 1; Se f = a; 1 j: translation; I m = 2; f -> j -> m; scenes only; scene A { tune {} } scene ▸B {}",
+        "param a: N = 1; Se f = a; 1 j: translation; I m = 2; f -> j -> m; scenes only; \
+        scene A { tune {} } scene ▸B {}",
     ),
     (
         "BG0611",
-        "gravity [1, 0, 0]; ground { point O = [0, 0, 0]; } body rod { sphere radius 1; density 1; start at [0, 1, 0]; point low = [0, -1, 0]; }\n\
+        "gravity [1, 0, 0]; ground { point O = [0, 0, 0]; } body rod { sphere radius 1; density 1; start at [0, 1, 0]; \
+        point low = [0, -1, 0]; }\n\
          joint pin: revolute z (ground.O -> rod.low) { rigid; }\n\
          scene A { all reactions; expect ▸independent speeds; }",
     ),
     ("BG0612", "body rod { sphere radius 1; density 1; }\nscene A { dependent ▸rood; }"),
     (
         "BG0613",
-        "gravity [0, 1, 0]; ground { point O = [0, 0, 0]; } body rod { sphere radius 1; density 1; start at [1, 0, 0]; point low = [-1, 0, 0]; }\n\
+        "gravity [0, 1, 0]; ground { point O = [0, 0, 0]; } body rod { sphere radius 1; density 1; start at [1, 0, 0]; \
+        point low = [-1, 0, 0]; }\n\
          joint pin: revolute z (ground.O -> rod.low) { rigid; }\n\
          scene A { dependent ▸rod; }",
     ),
@@ -458,7 +477,8 @@ const PARTS: [(&str, &str); 16] = [
     ("BG0814", "graph G { observe { all of ▸a } }"),
     (
         "BG0815",
-        "graph ▸G { for i in 0..9000 { for j in 0..9000 { let a[i][j] = 1; } } part b: Leg { c = 1; } }\npart Leg { let a = 1; }",
+        "graph ▸G { for i in 0..9000 { for j in 0..9000 { let a[i][j] = 1; } } part b: Leg { c = 1; \
+        } }\npart Leg { let a = 1; }",
     ),
     ("BG0816", "graph G { part a: Leg; let b = ▸a.length; }\npart Leg { let lenght = 1; }"),
 ];
@@ -483,11 +503,13 @@ const MORE_OF_PARTS: [(&str, &str); 11] = [
     ("BG0814", "graph G { part a: Leg; observe { all of ▸a } }\npart Leg { let a = 1; }"),
     (
         "BG0320",
-        "graph G { part a[9]: Leg; Se f = 1; 1 j: translation; f -> j; for i in 0..9 { j -> a[i].hub; } }\npart Leg { param k: N = 1; port hub: translation; I m = ▸k; hub -> m; }",
+        "graph G { part a[9]: Leg; Se f = 1; 1 j: translation; f -> j; for i in 0..9 { j -> a[i].hub; \
+        } }\npart Leg { param k: N = 1; port hub: translation; I m = ▸k; hub -> m; }",
     ),
     (
         "BG0316",
-        "graph G { param k: kg = 1; part a: Leg { l = ▸k; } Se f = 1; 1 j: translation; I m = 2; f -> j -> m; }\npart Leg { param l: m = 1; let a = l; }",
+        "graph G { param k: kg = 1; part a: Leg { l = ▸k; } Se f = 1; 1 j: translation; I m = 2; f -> j -> m; \
+        }\npart Leg { param l: m = 1; let a = l; }",
     ),
     ("BG0303", "part Leg { port hub: translation; I m = ▸mass; hub -> m; }"),
 ];
@@ -692,7 +714,8 @@ fn all_faults_of_a_stage_come_at_once() {
         &["BG0320", "BG0320", "BG0321", "BG0314", "BG0316"],
     );
     check_all(
-        "graph G {\nSe f = 1; 1 j: translation; I m = 2;\nC a(q) = 3 ▸* exp(sin(q / 1)); C b(q) = 2 * q energy 2 ▸* q;\n\
+        "graph G {\nSe f = 1; 1 j: translation; I m = 2;\nC a(q) = 3 ▸* exp(sin(q / 1)); \
+        C b(q) = 2 * q energy 2 ▸* q;\n\
          f -> j -> m; j -> a; j -> b;\n}",
         &["BG0503", "BG0504"],
     );
@@ -703,7 +726,8 @@ fn all_faults_of_causality_come_at_once() {
     // A derivative storage, a junction that two sources determine, a law the wrong way round, a junction without a
     // cause.
     check_all(
-        "graph G {\n1 a: translation; I i = 1; I ▸k = 2; a -> i; a -> k;\n0 b: translation; Se s = 1; Se ▸u = 2; s -> b; u -> b;\n\
+        "graph G {\n1 a: translation; I i = 1; I ▸k = 2; a -> i; a -> k;\n0 b: translation; Se s = 1; Se ▸u = 2; \
+        s -> b; u -> b;\n\
          1 c: translation; Sf f = 1; R ▸r(effort e) = e / 2; f -> c -> r;\n1 ▸d: translation; Se e = 1; e -> d;\n\
          expect integral causality;\n}",
         &["BG0403", "BG0401", "BG0404", "BG0402"],
@@ -713,8 +737,10 @@ fn all_faults_of_causality_come_at_once() {
 #[test]
 fn all_algebraic_loops_come_at_once() {
     // Two loops, one with several circles in it, which is one fault all the same; and an energy that is not known.
-    let text = "graph G {\nparam g: m/N^3/s = 1; Se e = 1; 1 j: translation; R a = 1; 0 k; R b(effort e) = g * hold.effort * e * e; e -> j -> a; j -> ▸k -> b;\n\
-         Se f = 1; 1 l: translation; R c = 1; 0 m; R d(effort e) = g * hold.effort * e * e; 1 n; R g1 = 3; 0 o; R h = 4; f -> l -> c; l -> ▸m -> d;\n\
+    let text = "graph G {\nparam g: m/N^3/s = 1; Se e = 1; 1 j: translation; R a = 1; 0 k; \
+        R b(effort e) = g * hold.effort * e * e; e -> j -> a; j -> ▸k -> b;\n\
+         Se f = 1; 1 l: translation; R c = 1; 0 m; R d(effort e) = g * hold.effort * e * e; 1 n; R g1 = 3; 0 o; \
+         R h = 4; f -> l -> c; l -> ▸m -> d;\n\
          m -> n -> g1; n -> o -> h;\n1 p: translation; I i = 1; C s(q) = 3 ▸* exp(sin(q / 1)); p -> i; p -> s;\n\
          1 q: translation; I u = 2; rSe hold = 0; q -> u; q -> hold;\n}";
     check_all(text, &["BG0501", "BG0501", "BG0503"]);
@@ -766,7 +792,8 @@ fn the_advice_on_missing_domains_leads_to_a_graph_that_compiles() {
 fn the_advice_on_derivative_causality_leads_to_a_graph_that_compiles() {
     let graph = |declared: &str, chain: &str| {
         format!(
-            "graph G {{ Se e = 1; 1 shaft: rotation; I rotor = 2; I wheel = 3; e -> shaft -> rotor; {declared} {chain} }}"
+            "graph G {{ Se e = 1; 1 shaft: rotation; I rotor = 2; I wheel = 3; e -> shaft -> rotor; \
+            {declared} {chain} }}"
         )
     };
     let faults = compiled(&graph("expect integral causality;", "shaft -> wheel;")).expect_err("two I on one junction");

@@ -1,7 +1,7 @@
 //! Golden outputs: generated code as text, and the hacksaw's trajectory beside an independent one.
 //!
-//! `golden/hacksaw_paper.csv` is the project's reference solution of the paper's case, 51 instants of 5 s: an independent
-//! implementation's, copied unchanged from `reference/hacksaw_paper.csv` of the project's shared files.
+//! `golden/hacksaw_paper.csv` is the project's reference solution of the paper's case, 51 instants of 5 s: an
+//! independent implementation's, copied unchanged from `reference/hacksaw_paper.csv` of the project's shared files.
 //! `README.md` says how the snapshots are renewed. What the program itself gives, with exact counts, is recorded in
 //! `hacksaw/golden`.
 

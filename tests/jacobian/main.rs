@@ -1,8 +1,9 @@
 //! Generated Jacobians are the derivatives of the generated rates; generated eliminations solve (I - c J) y = b.
 //!
 //! The derivatives are compared with those that dual numbers give of the same rate, column by column and along time, in
-//! both branches of every switch; a place outside the pattern must have none. The second derivatives are compared with those
-//! along the flow. The solutions are put back into the system. The rate that other numbers are given is that of `f64`.
+//! both branches of every switch; a place outside the pattern must have none. The second derivatives are compared with
+//! those along the flow. The solutions are put back into the system. The rate that other numbers are given is that of
+//! `f64`.
 
 use bg_model::bond_graph;
 use bg_model::capability::Elimination;
@@ -16,8 +17,8 @@ use bond_graph_tests::support::power::{Draw, state};
 use bond_graph_tests::support::record::along;
 use bond_graph_tests::{each_example, each_scene};
 
-/// Largest deviation of an entry, relative to itself and, for what cancels, to 1e-2 of the largest in its row, in these or in the
-/// opposite branches: what friction holds cancels all that the branch which slides has.
+/// Largest deviation of an entry, relative to itself and, for what cancels, to 1e-2 of the largest in its row, in these
+/// or in the opposite branches: what friction holds cancels all that the branch which slides has.
 const DERIVATIVE: f64 = 1e-11;
 /// Largest residual relative to |I - c J| |y| + |b|, maximum norms, for steps up to 1e-2 s.
 const RESIDUAL: f64 = 1e-12;
@@ -89,8 +90,8 @@ fn is_the_derivative(example: &Example, t: f64, x: &[f64], negative: &[bool]) ->
     largest
 }
 
-/// Compares the second derivatives of the states of second order with those that dual numbers give along the flow at this
-/// point; the other rates must stay. Gives how many states are of second order.
+/// Compares the second derivatives of the states of second order with those that dual numbers give along the flow at
+/// this point; the other rates must stay. Gives how many states are of second order.
 fn second_derivatives_agree(example: &Example, t: f64, x: &[f64], negative: &[bool]) -> usize {
     let (model, twin) = (&*example.machine, &*example.twin);
     let [rate, ..] = example.rates.rates(t, x, negative);

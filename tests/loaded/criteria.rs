@@ -1,5 +1,5 @@
-//! Criteria of runs of models of text: values against closed forms, derivatives against five-point differences, also where
-//! a largest value lies at an event.
+//! Criteria of runs of models of text: values against closed forms, derivatives against five-point differences, also
+//! where a largest value lies at an event.
 
 use std::f64::consts::PI;
 
@@ -82,7 +82,8 @@ graph Swing {
     I body = mass; C spring = stiffness start stretch;
     R damper(v) = if v < 0 { harder * v } else { softer * v };
     slide -> body; slide -> spring; slide -> damper;
-    observe { x: m = spring.q; v: m/s = slide.flow; force: N = spring.effort + damper.effort; place = [spring.q, 2 * spring.q, 0] }
+    observe { x: m = spring.q; v: m/s = slide.flow; force: N = spring.effort + damper.effort; \
+    place = [spring.q, 2 * spring.q, 0] }
 }";
 
 #[test]

@@ -97,7 +97,8 @@ impl MechanismVisitor for Beside<'_> {
     }
 }
 
-/// Numbers with slopes, for which long functions are tables, have the values of doubles, for which they are straight code.
+/// Numbers with slopes, for which long functions are tables, have the values of doubles, for which they are straight
+/// code.
 fn same_values(compiled: &dyn Machine, sloped: &dyn Machine<Gradient>) {
     let Ok(start) = compiled.start() else { return };
     let name = compiled.description().name;

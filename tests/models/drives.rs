@@ -41,7 +41,8 @@ bond_graph! {
     pub graph PushedPlate {
         /// Force along y at the corner.
         param force: N = 3;
-        body plate { mass 1.5; inertia [0.2, 0.3, 0.4]; center [0.1, 0, 0]; point corner = [0.6, 0, 0]; start at [1, 2, 3]; }
+        body plate { mass 1.5; inertia [0.2, 0.3, 0.4]; center [0.1, 0, 0]; point corner = [0.6, 0, 0];
+            start at [1, 2, 3]; }
         drive push on plate.corner force = [0, force, 0];
         observe {
             velocity: m/s = plate.velocity;

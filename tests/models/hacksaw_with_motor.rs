@@ -3,8 +3,8 @@
 //! The mechanism is that of the application, the part `hacksaw::Mechanism`, with another drive.
 
 bg_model::bond_graph! {
-    /// Bond-graph words for the motor, mechanism words for the saw; the gear's output shaft is a bond on the crank's pin.
-    /// The rotor has its own inertia, so that the shaft to the crank is a torsion spring with a damper.
+    /// Bond-graph words for the motor, mechanism words for the saw; the gear's output shaft is a bond on the crank's
+    /// pin. The rotor has its own inertia, so that the shaft to the crank is a torsion spring with a damper.
     pub graph HacksawWithMotor {
         part hacksaw::Mechanism;
         /// Resistance of the winding.

@@ -1,4 +1,5 @@
-//! Models whose functions are long, so that generated code has them in parts: one with branches, one whose parts repeat themselves.
+//! Models whose functions are long, so that generated code has them in parts: one with branches, one whose parts repeat
+//! themselves.
 
 use bg_model::bond_graph;
 
@@ -14,7 +15,8 @@ bond_graph! {
         }
     }
 
-    /// Three rods on rigid hinges, two about y and one about z: a motor that reverses turns the first one, a brake holds the last one.
+    /// Three rods on rigid hinges, two about y and one about z: a motor that reverses turns the first one, a brake
+    /// holds the last one.
     pub graph Whip {
         param torque: N*m = 20;
         param grip: N*m = 0.2, at least 0;
@@ -28,7 +30,8 @@ bond_graph! {
         friction brake on last { coulomb grip; }
         observe {
             tip: m = link[2].rod.head.position; gap: m = last.gap;
-            stored: J = stored_energy; supplied: J = integral(supplied_power); dissipated: J = integral(dissipated_power)
+            stored: J = stored_energy; supplied: J = integral(supplied_power);
+            dissipated: J = integral(dissipated_power)
         }
     }
 }
@@ -49,13 +52,15 @@ bond_graph! {
         gravity [0, -9.81, 0];
         ground { point O = [0, 0, 0]; }
         part link[i in 0..12]: Strand { place = i; }
-        joint first: revolute z (ground.O -> link[0].rod.foot) { stiffness stiffness; damping 10; tilt stiffness 1e3; tilt damping 1; }
+        joint first: revolute z (ground.O -> link[0].rod.foot) { stiffness stiffness; damping 10; tilt stiffness 1e3;
+            tilt damping 1; }
         joint pin[i in 1..12]: revolute z (link[i - 1].rod.head -> link[i].rod.foot) {
             stiffness stiffness; damping 10; tilt stiffness 1e3; tilt damping 1;
         }
         observe {
             tip: m = link[11].rod.head.position;
-            stored: J = stored_energy; supplied: J = integral(supplied_power); dissipated: J = integral(dissipated_power)
+            stored: J = stored_energy; supplied: J = integral(supplied_power);
+            dissipated: J = integral(dissipated_power)
         }
     }
 }

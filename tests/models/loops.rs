@@ -36,7 +36,8 @@ bond_graph! {
         }
     }
 
-    /// A mass that a lever moves along a line: the ratio changes with the angle, so the mass feels the square of the speed.
+    /// A mass that a lever moves along a line: the ratio changes with the angle, so the mass feels the square of the
+    /// speed.
     pub graph Lever {
         /// Moment of inertia of the lever.
         param inertia: kg*m^2 = 0.4, above 0;
@@ -64,7 +65,8 @@ bond_graph! {
         }
     }
 
-    /// A coil behind a resistor, with a conductance beside it that is larger one way: a loop whose solution has two branches.
+    /// A coil behind a resistor, with a conductance beside it that is larger one way: a loop whose solution has two
+    /// branches.
     pub graph Clipped {
         /// Amplitude of the source.
         param amplitude: V = 10;
@@ -127,7 +129,8 @@ bond_graph! {
         }
     }
 
-    /// Three throttles, laminar and turbulent, that meet in a node without volume: from a pump, to a tank and to an accumulator.
+    /// Three throttles, laminar and turbulent, that meet in a node without volume: from a pump, to a tank and to an
+    /// accumulator.
     pub graph Manifold {
         /// Pressure of the pump.
         param pump: Pa = 2e7;

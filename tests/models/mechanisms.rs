@@ -1,8 +1,9 @@
 //! Published mechanisms with rigid joints, of the library of multibody benchmarks of the IFToMM technical committee.
 //!
-//! M. Gonzalez, D. Dopico, U. Lugris, J. Cuadrado, "A benchmarking system for MBS simulation software", Multibody System
-//! Dynamics 16 (2006); cases A02 and A05 of its library, as github RehabEngGroup/MBSbenchmarksInOpenSim (c76fa61) has them.
-//! Andrews' squeezer (A03) and the pendulum (A01) are among the hard cases, Bricard's mechanism (A04) in `bg-model/tests`.
+//! M. Gonzalez, D. Dopico, U. Lugris, J. Cuadrado, "A benchmarking system for MBS simulation software", Multibody
+//! System Dynamics 16 (2006); cases A02 and A05 of its library, as github RehabEngGroup/MBSbenchmarksInOpenSim
+//! (c76fa61) has them. Andrews' squeezer (A03) and the pendulum (A01) are among the hard cases, Bricard's mechanism
+//! (A04) in `bg-model/tests`.
 
 use bg_model::bond_graph;
 

@@ -78,7 +78,8 @@ macro_rules! each_scene {
 macro_rules! each_example {
     ($then:ident) => {
         $then! {
-            mass_spring_damper: mass_spring_damper MassSpringDamper (MassSpringDamperParameters, MassSpringDamperInputs { force });
+            mass_spring_damper: mass_spring_damper MassSpringDamper (MassSpringDamperParameters,
+                MassSpringDamperInputs { force });
             rlc_circuit: rlc_circuit RlcCircuit (RlcCircuitParameters, RlcCircuitInputs { voltage });
             dc_motor: dc_motor DcMotor (DcMotorParameters, DcMotorInputs { voltage });
             gearbox: gearbox Gearbox (GearboxParameters, GearboxInputs { voltage });
@@ -87,12 +88,14 @@ macro_rules! each_example {
             clipped: loops Clipped (ClippedParameters);
             charger: loops Charger (ChargerParameters);
             manifold: loops Manifold (ManifoldParameters);
-            hydraulic_cylinder: hydraulic_cylinder HydraulicCylinder (HydraulicCylinderParameters, HydraulicCylinderInputs { pump_flow });
+            hydraulic_cylinder: hydraulic_cylinder HydraulicCylinder (HydraulicCylinderParameters,
+                HydraulicCylinderInputs { pump_flow });
             orifice: orifice Orifice (OrificeParameters);
             slider_crank: slider_crank SliderCrank (SliderCrankParameters);
             double_pendulum: double_pendulum DoublePendulum (DoublePendulumParameters);
             spinning_top: spinning_top SpinningTop (SpinningTopParameters);
-            hacksaw_with_motor: hacksaw_with_motor HacksawWithMotor (HacksawWithMotorParameters, HacksawWithMotorInputs { voltage });
+            hacksaw_with_motor: hacksaw_with_motor HacksawWithMotor (HacksawWithMotorParameters,
+                HacksawWithMotorInputs { voltage });
             charged_capacitor: sources ChargedCapacitor (ChargedCapacitorParameters);
             stiffness_and_compliance: sources StiffnessAndCompliance (StiffnessAndComplianceParameters);
             modulated_gyrator: modulated ModulatedGyrator (ModulatedGyratorParameters);

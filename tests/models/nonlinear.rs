@@ -18,7 +18,8 @@ bond_graph! {
         C spring(q) = stiffness * q + hardening * q * q * q start stretch;
         motion -> inertia;
         motion -> spring;
-        observe { x: m = spring.q; v: m/s = motion.flow; energy: J = spring.energy + inertia.energy; stored: J = stored_energy; }
+        observe { x: m = spring.q; v: m/s = motion.flow; energy: J = spring.energy + inertia.energy;
+            stored: J = stored_energy; }
     }
 
     /// A pendulum as a storage of its angle, the energy given.
@@ -73,7 +74,8 @@ bond_graph! {
         motion -> inertia;
         motion -> spring;
         motion -> damper;
-        observe { x: m = spring.q; v: m/s = motion.flow; stored: J = stored_energy; dissipated: J = integral(dissipated_power); }
+        observe { x: m = spring.q; v: m/s = motion.flow; stored: J = stored_energy;
+            dissipated: J = integral(dissipated_power); }
     }
 
     /// A half-wave rectifier: an alternating voltage behind a resistor charges a capacitor through an ideal diode law.

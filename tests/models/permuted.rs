@@ -52,8 +52,10 @@ bond_graph! {
         param stiffness: N/m = 2e3;
         gravity [0, -9.81, 0];
         ground { point O = [0, 0, 0]; }
-        body first { mass 1; inertia [0.1, 0.1, 0.1]; point up = [0, 0.2, 0]; point down = [0, -0.2, 0]; start up at [0, 0, 0]; }
-        body second { mass 2; inertia [0.1, 0.2, 0.3]; point up = [0, 0.3, 0]; start up at [0, -0.4, 0]; start velocity [1, 0, 0.3]; }
+        body first { mass 1; inertia [0.1, 0.1, 0.1]; point up = [0, 0.2, 0]; point down = [0, -0.2, 0];
+            start up at [0, 0, 0]; }
+        body second { mass 2; inertia [0.1, 0.2, 0.3]; point up = [0, 0.3, 0]; start up at [0, -0.4, 0];
+            start velocity [1, 0, 0.3]; }
         joint upper: spherical (ground.O -> first.up) { stiffness stiffness; damping 5; }
         joint lower: revolute z (first.down -> second.up) { stiffness stiffness; damping 5; tilt stiffness 100; }
         observe { first = first.position; second = second.position; h = second.h; stored: J = stored_energy; }
@@ -63,8 +65,10 @@ bond_graph! {
         observe { stored: J = stored_energy; h = second.h; second = second.position; first = first.position; }
         joint lower: revolute z (first.down -> second.up) { tilt stiffness 100; damping 5; stiffness stiffness; }
         joint upper: spherical (ground.O -> first.up) { damping 5; stiffness stiffness; }
-        body second { start velocity [1, 0, 0.3]; start up at [0, -0.4, 0]; point up = [0, 0.3, 0]; inertia [0.1, 0.2, 0.3]; mass 2; }
-        body first { start up at [0, 0, 0]; point down = [0, -0.2, 0]; point up = [0, 0.2, 0]; inertia [0.1, 0.1, 0.1]; mass 1; }
+        body second { start velocity [1, 0, 0.3]; start up at [0, -0.4, 0]; point up = [0, 0.3, 0];
+            inertia [0.1, 0.2, 0.3]; mass 2; }
+        body first { start up at [0, 0, 0]; point down = [0, -0.2, 0]; point up = [0, 0.2, 0]; inertia [0.1, 0.1, 0.1];
+            mass 1; }
         ground { point O = [0, 0, 0]; }
         gravity [0, -9.81, 0];
         param stiffness: N/m = 2e3;

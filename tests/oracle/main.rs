@@ -397,8 +397,8 @@ fn random_networks_conserve_power() {
     for number in 0..1500 {
         let text = fuzz::Kind::Network.input(&[], 6, number).text();
         let Ok((causal, mut equations)) = attempt(&text) else { continue };
-        // What is held at zero is so in states that fit; a state drawn at random does not. Dependent storages have the suite
-        // `linear`: the laws here have parts of 1e25 that cancel where a law is solved for its flow.
+        // What is held at zero is so in states that fit; a state drawn at random does not. Dependent storages have the
+        // suite `linear`: the laws here have parts of 1e25 that cancel where a law is solved for its flow.
         if equations.holding.rigid.is_empty() && causal.derivative.is_empty() && equations.iterations.is_empty() {
             checked += usize::from(is_balanced(&text, &causal, &mut equations, &mut random));
         }

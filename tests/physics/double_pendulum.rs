@@ -72,7 +72,8 @@ fn small_swings_have_the_frequencies_of_the_linear_pendulum() {
         let (upper_angle, lower_angle) = (size * u0, size * u1);
         let of = |stiffness: f64| {
             let parameters = Parameters { upper_angle, lower_angle, stiffness, ..p.clone() };
-            // At 1e-11 the momenta's tolerances are below the rounding of the pins' forces, and steps as short as that asks.
+            // At 1e-11 the momenta's tolerances are below the rounding of the pins' forces, and steps as short as that
+            // asks.
             let run = record(&DoublePendulum::new(parameters).unwrap(), &instants(2.0 * TAU / w, 40), 1e-9);
             let error = angles(&run).iter().zip(&run.times).fold(0.0_f64, |largest, (angle, t)| {
                 let (upper, lower) = (upper_angle * (w * t).cos(), lower_angle * (w * t).cos());

@@ -45,7 +45,8 @@ graph Forty {
     part square[i in 0..40]: Square { place = i + 1; }
     joint left: revolute z (first.rod.head -> square[0].rod.left) { rigid; }
     joint middle[i in 1..40]: revolute z (square[i - 1].post.rod.head -> square[i].rod.left) { rigid; }
-    observe { x: m = first.rod.head.position.x; y: m = first.rod.head.position.y; stored: J = stored_energy; last: m = square[39].pin.gap }
+    observe { x: m = first.rod.head.position.x; y: m = first.rod.head.position.y; stored: J = stored_energy; \
+    last: m = square[39].pin.gap }
     scene Plane { tune {} expect planar; expect independent speeds; expect states = 243; }
 }";
 

@@ -33,7 +33,8 @@ const CASES: [(&str, &str); 14] = [
     ("scene ▸G {}", "[BG0601] there are two models called `G`\nhelp: give one of them another name"),
     (
         "scene ▸GParameters {}",
-        "[BG0601] `GParameters` would be a model and the parameters of `G`\nhelp: give one of the two models another name",
+        "[BG0601] `GParameters` would be a model and the parameters of `G`\nhelp: give one of the two models another \
+        name",
     ),
     (
         "scene A {\n    without { band, ▸pivott }\n}",
@@ -41,7 +42,8 @@ const CASES: [(&str, &str); 14] = [
     ),
     (
         "scene A { without ▸engine; }",
-        "[BG0602] there is no `engine` to leave out\nhelp: name a joint, contact, spring, drive, friction, stop or element",
+        "[BG0602] there is no `engine` to leave out\nhelp: name a joint, contact, spring, drive, friction, stop or \
+        element",
     ),
     (
         "scene A { tune { mass, ▸windng } }",
@@ -54,14 +56,14 @@ const CASES: [(&str, &str); 14] = [
     (
         "drive push on bob force = [0, 0, aside];\nscene A { expect ▸planar; }",
         "[BG0604] scene `A` is not planar: these are not proved constant: bob.position_z, bob.orientation_31, \
-         bob.orientation_32, bob.orientation_33\nhelp: find what moves them: a tuned parameter out of the plane, a start value, \
-         a force",
+         bob.orientation_32, bob.orientation_33\nhelp: find what moves them: a tuned parameter out of the plane, a \
+         start value, a force",
     ),
     (
         "scene A { expect planar; expect states = ▸8; }",
         "[BG0605] scene `A` integrates 7 states, not 8: bob.position_x, bob.position_y, bob.orientation_11, \
-         bob.orientation_12, bob.linear.p_x, bob.linear.p_y, bob.angular.p_z\nhelp: correct the number, or what the scene \
-         watches and tunes",
+         bob.orientation_12, bob.linear.p_x, bob.linear.p_y, bob.angular.p_z\nhelp: correct the number, or what the \
+         scene watches and tunes",
     ),
     ("scene A { rigid { ▸pivo } }", "[BG0606] there is no joint `pivo` to make rigid\nhelp: did you mean `pivot`?"),
     (
@@ -80,8 +82,8 @@ const CASES: [(&str, &str); 14] = [
     ),
     (
         "scene A { rigid joints; expect ▸independent speeds; }",
-        "[BG0611] scene `A` keeps the reactions of all rigid joints: start velocities may tear joint `pivot`\nhelp: make \
-         its start velocities guesses, or give those of both bodies so that they fit",
+        "[BG0611] scene `A` keeps the reactions of all rigid joints: start velocities may tear joint `pivot`\nhelp: \
+         make its start velocities guesses, or give those of both bodies so that they fit",
     ),
 ];
 
@@ -100,7 +102,8 @@ fn each_fault_of_a_scene_has_its_place_and_its_words() {
 #[test]
 fn faults_of_a_scene_s_lists_come_at_once() {
     let text = format!(
-        "{GRAPH}scene A {{ without {{ engine }} rigid {{ wheel }} }}\nscene A {{}}\nscene B {{ without {{ engine }} }}\n}}"
+        "{GRAPH}scene A {{ without {{ engine }} rigid {{ wheel }} }}\nscene A {{}}\nscene B {{ without {{ engine }} \
+        }}\n}}"
     );
     let codes: Vec<_> = faults(&text).iter().map(|fault| fault.code).collect();
     assert_eq!(codes, ["BG0601", "BG0602", "BG0606", "BG0602"]);

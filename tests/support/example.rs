@@ -127,7 +127,8 @@ pub mod examples {
 
     macro_rules! made {
         ($($name:ident: $module:ident $model:ident ($($rest:tt)*);)*) => {$(
-            #[doc = concat!("`", stringify!($model), "` with the defaults of its parameters, each of its inputs this one.")]
+            #[doc = concat!("`", stringify!($model), "` with the defaults of its parameters, each of its inputs this \
+                one.")]
             #[must_use]
             pub fn $name(input: &Input) -> Example {
                 Example::with_defaults::<crate::models::$module::$model>(input)

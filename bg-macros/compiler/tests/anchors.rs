@@ -29,7 +29,8 @@ const TEXT: &str = "
         ground { point n_pivot = [0, 1, 0]; }
         part n_left: n_leg { n_rate = n_stiff; start n_foot at [n_length, 0, 0]; }
         part n_row[2]: n_leg;
-        body n_rod { cuboid [n_length, 0.03, 0.03] density 7850; point n_end = [-n_half, 0, 0]; start n_end at [0, 1, 0]; }
+        body n_rod { cuboid [n_length, 0.03, 0.03] density 7850; point n_end = [-n_half, 0, 0]; \
+        start n_end at [0, 1, 0]; }
         joint n_pin: revolute z (ground.n_pivot -> n_rod.n_end) {
             stiffness 1e6; damping 100; tilt stiffness 1e3; tilt damping 1;
         }

@@ -14,7 +14,8 @@ use crate::sheet::{Link, Of, Sheet};
 pub fn dot(graph: &Graph, level: Level) -> String {
     let sheet = Sheet::new(graph, level);
     let mut out = format!(
-        "digraph {} {{\n  rankdir=LR;\n  fontname=\"Helvetica\";\n  node [shape=plaintext, fontname=\"Helvetica\", fontsize=11];\n  \
+        "digraph {} {{\n  rankdir=LR;\n  fontname=\"Helvetica\";\n  node [shape=plaintext, fontname=\"Helvetica\", \
+        fontsize=11];\n  \
          edge [fontname=\"Helvetica\", fontsize=9];\n",
         quoted(&graph.name)
     );

@@ -1,9 +1,9 @@
 //! The colours and letters of the picture.
 //!
-//! In: nothing. Out: attributes of what is drawn, and a style sheet. The attributes alone are the whole picture on light
-//! paper, for readers that know no style sheets. The sheet makes each colour a variable of the page around, such as
-//! `--bond-graph-ink`, with a value for light and one for dark surroundings where the page sets none. All of it is in
-//! `@supports` and `@media`, which a reader that knows no variables skips: a rule with one would be black to it.
+//! In: nothing. Out: attributes of what is drawn, and a style sheet. The attributes alone are the whole picture on
+//! light paper, for readers that know no style sheets. The sheet makes each colour a variable of the page around, such
+//! as `--bond-graph-ink`, with a value for light and one for dark surroundings where the page sets none. All of it is
+//! in `@supports` and `@media`, which a reader that knows no variables skips: a rule with one would be black to it.
 
 /// Name, light, dark. The light ones are all different: by them the style sheet finds what has which colour.
 const COLOURS: [(&str, &str, &str); 12] = [
@@ -28,7 +28,8 @@ const LINES: [&str; 2] = ["bond", "line"];
 const IN_PAGES: &str = "\
 .bond-graph{max-width:100%;height:auto;fill:var(--faint)}\
 .bond-graph .arrow{stroke-linecap:round}.bond-graph .hit{stroke-width:9px;pointer-events:stroke}\
-.bond-graph text{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,\"DejaVu Sans\",sans-serif}";
+.bond-graph text{font-family:system-ui,-apple-system,\"Segoe UI\",Roboto,\"Helvetica Neue\",Arial,\"DejaVu \
+Sans\",sans-serif}";
 
 const HOVER: &str = "\
 .bond-graph .bond:hover .line,.bond-graph .bond:hover .arrow,.bond-graph .bond:hover .stroke,\
@@ -42,8 +43,8 @@ pub(crate) fn root() -> String {
     )
 }
 
-/// The attributes of a text that is no name as at the [`root`]: a colour, a size in pixels, whether it is bold. Each after
-/// a blank.
+/// The attributes of a text that is no name as at the [`root`]: a colour, a size in pixels, whether it is bold. Each
+/// after a blank.
 pub(crate) fn letters(colour: &str, size: Option<i32>, is_bold: bool) -> String {
     let colour = if colour.is_empty() { String::new() } else { format!(" {}", fill(colour)) };
     let size = size.map_or_else(String::new, |size| format!(" font-size=\"{size}\""));

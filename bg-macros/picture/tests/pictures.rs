@@ -52,7 +52,8 @@ fn mechanism(count: usize) -> Graph {
             maker.node(kind, &format!("{body}.{name}"));
         }
         maker.bonds(&format!(
-            "{body}.translation =>| {body}.linear; {body}.rotation =>| {body}.angular; {body}.weight =>| {body}.translation"
+            "{body}.translation =>| {body}.linear; {body}.rotation =>| {body}.angular; \
+            {body}.weight =>| {body}.translation"
         ));
         let pin = format!("pin{number}");
         maker.part("revolute z", &pin);

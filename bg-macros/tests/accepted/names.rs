@@ -1,5 +1,5 @@
-//! Names that generated code could take for its own: those of Rust, of the code's own items, of keywords in some editions, and
-//! what the user has in scope. None is forbidden, and the models are right.
+//! Names that generated code could take for its own: those of Rust, of the code's own items, of keywords in some
+//! editions, and what the user has in scope. None is forbidden, and the models are right.
 #![allow(dead_code, non_camel_case_types, non_snake_case, non_upper_case_globals)]
 
 use bg_model::nalgebra::SVector;

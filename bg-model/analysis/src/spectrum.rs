@@ -1,9 +1,9 @@
 //! Amplitude spectra of courses, over frequency or over the orders of a shaft.
 //!
 //! In: values at instants. Out: an amplitude for each frequency (Hz) or order (per turn). Method: values at equal
-//! distances in time or angle by straight lines, less their mean, under a Hann window, by the crate `rustfft`; divided by
-//! the window's mean, so that a sine of a frequency in the list has its own amplitude (F. J. Harris, Proc. IEEE 66 (1978)
-//! 51).
+//! distances in time or angle by straight lines, less their mean, under a Hann window, by the crate `rustfft`; divided
+//! by the window's mean, so that a sine of a frequency in the list has its own amplitude (F. J. Harris, Proc. IEEE 66
+//! (1978) 51).
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -16,8 +16,8 @@ use rustfft::{Fft, FftDirection};
 /// A spectrum: what it is over, and the amplitude there.
 pub type Spectrum = Vec<(f64, f64)>;
 
-/// The amplitudes of `values` at `times` (s, ascending) over frequency above zero, Hz, in the values' unit; nothing of fewer
-/// than four values.
+/// The amplitudes of `values` at `times` (s, ascending) over frequency above zero, Hz, in the values' unit; nothing of
+/// fewer than four values.
 #[must_use]
 pub fn over_frequency(times: &[f64], values: &[f64]) -> Spectrum {
     spectrum(times, values)
@@ -61,8 +61,8 @@ fn spectrum(places: &[f64], values: &[f64]) -> Spectrum {
 }
 
 /// The transform of `count` numbers, four or more: by Bluestein's algorithm (L. I. Bluestein, IEEE Trans. Audio
-/// Electroacoustics 18 (1970) 451) over one whose length is a power of two. The crate's planner would choose among all its
-/// algorithms, which are a fifth of the code of this package then.
+/// Electroacoustics 18 (1970) 451) over one whose length is a power of two. The crate's planner would choose among all
+/// its algorithms, which are a fifth of the code of this package then.
 fn transform(count: usize) -> BluesteinsAlgorithm<f64> {
     let exponent = (2 * count - 1).next_power_of_two().ilog2();
     let inner = if exponent.is_multiple_of(2) {

@@ -30,8 +30,8 @@ fn extremes(chunk: &[(f64, f64)]) -> Vec<(f64, f64)> {
     kept.into_iter().map(|index| chunk[index]).collect()
 }
 
-/// The number, and of what is no number always the same bits: those of 0/0 are another sign from machine to machine, and
-/// in a browser from one call to the next.
+/// The number, and of what is no number always the same bits: those of 0/0 are another sign from machine to machine,
+/// and in a browser from one call to the next.
 pub(crate) fn canonical(value: f64) -> f64 {
     const NONE: f64 = f64::from_bits(0x7ff8_0000_0000_0000);
     if value.is_nan() { NONE } else { value }

@@ -144,13 +144,16 @@ const INTERPRETED: &str = "--interpreted";
 /// The option for larger graphs.
 const LIMIT: &str = "--limit-statements";
 
-const AFTER: &str = "`bond FILE [OPTIONS]` is `bond run FILE [OPTIONS]`. `bond COMMAND FILE --help` has the options of a command with the
+const AFTER: &str =
+    "`bond FILE [OPTIONS]` is `bond run FILE [OPTIONS]`. `bond COMMAND FILE --help` has the options of \
+    a command with the
 names in the file, and without FILE the options.
 
 FILE is a text with graphs (`.bond`), a Rust file with calls of `bond_graph!` (`.rs`), a robot (`.urdf`, or `.xml` and
 `.mjcf` of MuJoCo). Of a file with several graphs `--graph NAME` says which. A graph has at most 20000 statements, with
 its repetitions and parts written out; `--limit-statements NUMBER` allows others. Models run in machine code where that
-pays, with `--interpreted` without it: slower, and to the bit the same. `--table NAME=FILE.csv` gives a table of the file
+pays, with `--interpreted` without it: slower, and to the bit the same. `--table NAME=FILE.csv` gives a table of the \
+file
 other points, any number of them, in every command.
 
 Exit code: 0 done, 1 the run or an output failed, 2 the input cannot be used.";

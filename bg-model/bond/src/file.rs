@@ -224,8 +224,8 @@ pub fn graphs(text: &Text, wanted: &Wanted) -> Result<Vec<Graph>, Vec<Fault>> {
     on_a_large_stack(|| wanted.told(|wanted| load_file(&text.path, text.opened(), &open, wanted)))
 }
 
-/// The names of the graphs of a text, each with the number of its models, where none of these has a fault; `most` is how
-/// many statements a graph may have. Nothing is made of them.
+/// The names of the graphs of a text, each with the number of its models, where none of these has a fault; `most` is
+/// how many statements a graph may have. Nothing is made of them.
 ///
 /// # Errors
 /// As [`graphs`].

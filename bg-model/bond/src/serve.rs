@@ -20,8 +20,8 @@ const INDEX: &str = "index.html";
 pub enum ServeFault {
     /// The folder has no page.
     #[error(
-        "there is no page in {}; write one by `cargo run --release -p bond-page -- FOLDER` in the project's folder, and \
-         say --page FOLDER", .0.display()
+        "there is no page in {}; write one by `cargo run --release -p bond-page -- FOLDER` in the project's folder, \
+         and say --page FOLDER", .0.display()
     )]
     NoPage(PathBuf),
     /// The port cannot be had.

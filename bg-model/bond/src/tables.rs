@@ -1,6 +1,7 @@
 //! Tables of a text with the points of other files.
 //!
-//! In: names and files, or the summary of a run that is made again. Out: the text with them; what the summary has of them.
+//! In: names and files, or the summary of a run that is made again. Out: the text with them; what the summary has of
+//! them.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +29,8 @@ pub enum TableFault {
     #[error(transparent)]
     Again(#[from] AgainError),
     /// A file has changed since.
-    #[error("--again: the points of the table `{name}` in {} are others than then; the run would be another one", path.display())]
+    #[error("--again: the points of the table `{name}` in {} are others than then; \
+        the run would be another one", path.display())]
     Other {
         /// The table.
         name: String,

@@ -82,8 +82,8 @@ impl Points {
 }
 
 impl Text {
-    /// The same where the table of this name has other points, as many as it may be. A table of a file that the text uses
-    /// stays as it is.
+    /// The same where the table of this name has other points, as many as it may be. A table of a file that the text
+    /// uses stays as it is.
     ///
     /// # Errors
     /// [`NoTable`].

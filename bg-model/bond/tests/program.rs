@@ -180,7 +180,8 @@ part Shaft {
     end -> wheel.rim;
     observe { speed: rad/s = wheel.disc.flow }
 }
-graph Alone { part shaft: Shaft; Se brake = -1; 1 axle: rotation; brake -> axle -> shaft.end; observe { shaft.speed } }";
+graph Alone { part shaft: Shaft; Se brake = -1; 1 axle: rotation; brake -> axle -> shaft.end; \
+observe { shaft.speed } }";
 const WHEEL: &str =
     "part Wheel {\n    param inertia: kg*m^2 = 1;\n    port rim: rotation; I disc = inertia; rim -> disc;\n}";
 
@@ -575,7 +576,8 @@ fn the_library_is_listed_and_its_parts_are_printed() {
     let wrong = refused(folder.path(), "parts GearPar", 2);
     assert!(wrong.contains("the library has no part `GearPar`; did you mean `GearPair`?"), "{wrong}");
     // A file that uses it, here and from another folder.
-    let geared = "use gears; graph G { part p: GearPair; Se m = 1; 1 a: rotation; 1 b: rotation; I i = 1; m -> a -> p.first; p.second -> b -> i; }";
+    let geared = "use gears; graph G { part p: GearPair; Se m = 1; 1 a: rotation; 1 b: rotation; I i = 1; \
+        m -> a -> p.first; p.second -> b -> i; }";
     write(&folder, "geared.bond", geared);
     assert!(told(folder.path(), "check geared.bond").contains("geared.bond"));
     write(&folder, "wrong.bond", &geared.replace("use gears", "use gear"));

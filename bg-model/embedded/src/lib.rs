@@ -1,8 +1,8 @@
 //! A geared motor, observed: the bond graph has the corrections as sources, which measurements modulate.
 //!
-//! In: voltage, measured current and measured speed of the rotor, a thousand times a second. Out: all states, among them the twist
-//! of the shaft, the speed of the load and the torque that acts on it, which nothing measures. No `std`: the same lines run on a
-//! controller and on a desktop.
+//! In: voltage, measured current and measured speed of the rotor, a thousand times a second. Out: all states, among
+//! them the twist of the shaft, the speed of the load and the torque that acts on it, which nothing measures. No `std`:
+//! the same lines run on a controller and on a desktop.
 
 #![no_std]
 
@@ -27,8 +27,8 @@ pub use methods::methods;
 pub const RATE: f64 = 1000.0;
 
 bond_graph! {
-    /// A direct-current motor that turns a load through a gear and a shaft that twists. The effort of each correction is a gain times
-    /// what a measurement differs from the model: a Luenberger observer, written as a bond graph.
+    /// A direct-current motor that turns a load through a gear and a shaft that twists. The effort of each correction
+    /// is a gain times what a measurement differs from the model: a Luenberger observer, written as a bond graph.
     pub graph Drive {
         /// Resistance of the winding.
         param winding: Ohm = 0.8, above 0;
@@ -119,9 +119,9 @@ bond_graph! {
     }
 }
 
-/// Runs `samples` samples of the bench with an observer that calculates in `S`. Writes the bits of its states after every tenth part
-/// of them: the sample, then each state as the 64 bits of its `f64`. What an observer does with a sample is called through
-/// `around`, which may time it.
+/// Runs `samples` samples of the bench with an observer that calculates in `S`. Writes the bits of its states after
+/// every tenth part of them: the sample, then each state as the 64 bits of its `f64`. What an observer does with a
+/// sample is called through `around`, which may time it.
 ///
 /// # Errors
 /// Parameters that cannot be, numbers that are not finite, a place that takes no text.

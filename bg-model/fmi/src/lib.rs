@@ -1,4 +1,5 @@
-//! `bond_graph!` models as functional mock-up units (FMU): FMI 3.0 or 2.0, Model Exchange and Co-Simulation in one file.
+//! `bond_graph!` models as functional mock-up units (FMU): FMI 3.0 or 2.0, Model Exchange and Co-Simulation in one
+//! file.
 //!
 //! A unit is a dynamic library and `modelDescription.xml` in an archive. The library is a package of a few lines, of
 //! `crate-type = ["cdylib"]`:

@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 
 /// What a name may not be: Rust's keywords, and what the language calls its own things or those of a body or a joint.
-const RESERVED: &str = "as break const continue crate else enum extern false fn for if impl in let loop match mod move mut pub \
-    ref return self static struct super trait true type unsafe use where while async await dyn abstract become box do final \
-    macro override priv typeof unsized virtual yield try gen t ground gravity origin stored_energy supplied_power \
-    dissipated_power gravity_field position velocity orientation angle momentum p h mass center tensor moments weight \
-    translation rotation linear angular start place attitude x_axis y_axis z_axis angular_velocity angular_momentum \
-    kinetic_energy potential energy Self";
+const RESERVED: &str = "as break const continue crate else enum extern false fn for if impl in let loop match mod move \
+    mut pub ref return self static struct super trait true type unsafe use where while async await dyn abstract become \
+    box do final macro override priv typeof unsized virtual yield try gen t ground gravity origin stored_energy \
+    supplied_power dissipated_power gravity_field position velocity orientation angle momentum p h mass center tensor \
+    moments weight translation rotation linear angular start place attitude x_axis y_axis z_axis angular_velocity \
+    angular_momentum kinetic_energy potential energy Self";
 
 /// The names that are taken.
 #[derive(Debug)]

@@ -157,8 +157,8 @@ impl<'n> Reader<'n> {
         let ratio = value("drake:gear_ratio")?.flatten().unwrap_or(1.0);
         joint.armature = rotor * ratio * ratio;
         self.notes.push(format!(
-            "Joint `{}` has the inertia {} of its motor, drake:rotor_inertia times the square of drake:gear_ratio: other \
-             programs than Drake leave it out.",
+            "Joint `{}` has the inertia {} of its motor, drake:rotor_inertia times the square of drake:gear_ratio: \
+             other programs than Drake leave it out.",
             joint.name,
             crate::number::number(joint.armature)
         ));

@@ -59,7 +59,8 @@ fn program(name: &str, file: &Path) -> PathBuf {
         "Cargo.toml",
         &format!(
             "[package]\nname = \"{name}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\n\
-             bg-model = {{ path = {model:?} }}\nbg-workbench = {{ path = {workbench:?} }}\n\n[profile.dev]\ndebug = false\n"
+             bg-model = {{ path = {model:?} }}\nbg-workbench = {{ path = {workbench:?} }}\n\n[profile.dev]\ndebug = \
+             false\n"
         ),
     );
     let lock = repository().join("Cargo.lock");

@@ -164,7 +164,8 @@ fn what_is_wrong_with_a_urdf_is_told_with_its_line() {
         (arm(MASS, "fixed", "<origin xyz='1 2'/>"), "line 4: `xyz` of <origin> is \"1 2\": it must be 3 numbers"),
         (
             arm(MASS, "hinge", ""),
-            "line 4: `type` of <joint> is \"hinge\": it must be revolute, continuous, prismatic, fixed, floating or planar",
+            "line 4: `type` of <joint> is \"hinge\": it must be revolute, continuous, prismatic, fixed, floating or \
+            planar",
         ),
         (
             arm(MASS, "continuous", "<axis xyz='0 0 0'/>"),

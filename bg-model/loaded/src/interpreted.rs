@@ -201,8 +201,8 @@ impl<S: Scalar> Interpreted<S> {
         }
     }
 
-    /// The same where what iterations find is there. A moment is not copied on the way to machine code: that would take a
-    /// fifth of a rate, as a copy reads in large pieces what has just been written in small ones.
+    /// The same where what iterations find is there. A moment is not copied on the way to machine code: that would take
+    /// a fifth of a rate, as a copy reads in large pieces what has just been written in small ones.
     fn evaluate_found(&self, code: &Code, row: &RefCell<Row<S>>, moment: &Moment<'_, S>, to: &mut [S]) {
         let row = &mut *row.borrow_mut();
         code.evaluate(row, moment.x, |symbol| self.symbol(symbol, moment), moment.negative, to);

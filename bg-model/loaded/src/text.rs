@@ -119,7 +119,8 @@ pub fn load_file(path: &Path, first: Opened, open: Open<'_>, wanted: Wanted<'_>)
     graphs(&gathered, wanted).map_err(|faults| placed(&gathered, faults))
 }
 
-/// The same of the file at `path`, of which nothing is made: the names of its graphs, each with the number of its models.
+/// The same of the file at `path`, of which nothing is made: the names of its graphs, each with the number of its
+/// models.
 ///
 /// # Errors
 /// As [`load`].

@@ -101,16 +101,17 @@ impl Model {
     /// Run the model; parameters are keyword arguments.
     ///
     /// An input is a number, a text such as "12 kN", the path of a CSV file, a pair of arrays `(t, values)`, rows
-    /// `[[t, value], ..]` joined by straight lines, or a function of t in s. That is called several times a step, not in
-    /// order of time, and gives the same for the same t; what it raises ends the run and is raised.
+    /// `[[t, value], ..]` joined by straight lines, or a function of t in s. That is called several times a step, not
+    /// in order of time, and gives the same for the same t; what it raises ends the run and is raised.
     ///
     /// Gives a table with the time `t` in s every `step` s until `t_end` s, and all outputs of the scene. `set` takes
     /// parameters whose names are no Python names. `hint` is what `auto` begins with: a method's name, the
     /// `info["hint"]` of a run like this, which is the method that made most of it, or a `summary.json`.
     /// `info["inputs"]` has of each input its `unit`, whether it was given, and its `value` or the `table` that it
-    /// follows: file, CRC-32, rows, first and last row; neither of a function. Raises ValueError where something cannot be, RunFailed where
-    /// the run stops before its end.
-    #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, fixed_step=None, start="model", inputs=None, set=None, **parameters))]
+    /// follows: file, CRC-32, rows, first and last row; neither of a function. Raises ValueError where something cannot
+    /// be, RunFailed where the run stops before its end.
+    #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None,
+        fixed_step=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn run(
         &self,
@@ -145,7 +146,8 @@ impl Model {
     /// Gives the next state and the outputs there by name. A state is a text, the `info["state"]` of a run; without one
     /// it begins at the model's own start. Inputs and parameters are those of this step. Raises `RunFailed` where it
     /// does not come to its end.
-    #[pyo3(signature = (state=None, dt=0.01, scene=None, *, method=None, hint=None, rtol=None, atol=None, fixed_step=None, inputs=None, set=None, **parameters))]
+    #[pyo3(signature = (state=None, dt=0.01, scene=None, *, method=None, hint=None, rtol=None, atol=None,
+        fixed_step=None, inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn step<'py>(
         &self,
@@ -185,7 +187,8 @@ impl Model {
     ///
     /// `others` are CSV files of other runs or measurements, drawn beside it. Gives a picture, which a notebook shows:
     /// its SVG is `svg`, and `save(path)` writes it. Raises ValueError where it cannot be drawn.
-    #[pyo3(signature = (picture, scene=None, *, others=None, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, start="model", inputs=None, set=None, **parameters))]
+    #[pyo3(signature = (picture, scene=None, *, others=None, t_end=None, step=None, method=None, hint=None, rtol=None,
+        atol=None, start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn plot(
         &self,
@@ -224,9 +227,10 @@ impl Model {
 
     /// Run the model and show all of it: the machine in motion, charts, energy balance, the bond graph.
     ///
-    /// Gives a page, which a notebook shows: its HTML is `html`, and `save(path)` writes it. A run that stops before its
-    /// end has a page that says so.
-    #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, start="model", inputs=None, set=None, **parameters))]
+    /// Gives a page, which a notebook shows: its HTML is `html`, and `save(path)` writes it. A run that stops before
+    /// its end has a page that says so.
+    #[pyo3(signature = (scene=None, *, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None,
+        start="model", inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn report(
         &self,
@@ -256,7 +260,8 @@ impl Model {
     /// `at` where its run is, s. Gives a dict: `modes`, a table with a row for each mode at each value,
     /// `critical_speeds`, a table of where the `orders` of a speed meet modes, and `picture`. Raises ValueError where
     /// there are none.
-    #[pyo3(signature = (by, scene=None, *, points=61, orders=None, at=None, start="model", inputs=None, set=None, **parameters))]
+    #[pyo3(signature = (by, scene=None, *, points=61, orders=None, at=None, start="model", inputs=None, set=None,
+        **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn campbell<'py>(
         &self,
@@ -312,7 +317,8 @@ impl Model {
     /// Gives a table with the time `t` in s and a column `d(output)/d(parameter)` for each of the `outputs` and each
     /// parameter in `by`; without them for all outputs, by all parameters of the scene. Raises ValueError where
     /// something cannot be.
-    #[pyo3(signature = (scene=None, *, by=None, outputs=None, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
+    #[pyo3(signature = (scene=None, *, by=None, outputs=None, t_end=None, step=None, method=None, hint=None, rtol=None,
+        atol=None, inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn sensitivity(
         &self,
@@ -344,10 +350,11 @@ impl Model {
     /// Differentiate one number of a run by all parameters at once, by the run followed backwards.
     ///
     /// The number is the output `of` at the end, or at `at` s, or with `integral` its integral over the run. Gives its
-    /// value and a dict of its derivatives by the parameters in `by`, or by all of the scene: what a search by gradients
-    /// asks for (`scipy.optimize.minimize(.., jac=True)`, a JAX function with `custom_vjp`). Raises ValueError where
-    /// there are none.
-    #[pyo3(signature = (of, scene=None, *, at=None, integral=false, by=None, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
+    /// value and a dict of its derivatives by the parameters in `by`, or by all of the scene: what a search by
+    /// gradients asks for (`scipy.optimize.minimize(.., jac=True)`, a JAX function with `custom_vjp`). Raises
+    /// ValueError where there are none.
+    #[pyo3(signature = (of, scene=None, *, at=None, integral=false, by=None, t_end=None, step=None, method=None,
+        hint=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn gradient<'py>(
         &self,
@@ -384,10 +391,12 @@ impl Model {
 
     /// Fit parameters to what was measured, with what is known of them.
     ///
-    /// `data` is the path of a CSV file, or columns by name: `t` in s, the others named as outputs, or as `columns` says,
-    /// "name=output". `fit` are names, `bounds` narrower ranges, "k=1e3..1e5". Gives a dict: `parameters` with value and
-    /// interval, `converged`, what each of the `columns` leaves. Raises ValueError where nothing can be fitted.
-    #[pyo3(signature = (data, fit, scene=None, *, bounds=None, columns=None, method=None, rtol=None, inputs=None, set=None, **parameters))]
+    /// `data` is the path of a CSV file, or columns by name: `t` in s, the others named as outputs, or as `columns`
+    /// says, "name=output". `fit` are names, `bounds` narrower ranges, "k=1e3..1e5". Gives a dict: `parameters` with
+    /// value and interval, `converged`, what each of the `columns` leaves. Raises ValueError where nothing can be
+    /// fitted.
+    #[pyo3(signature = (data, fit, scene=None, *, bounds=None, columns=None, method=None, rtol=None, inputs=None,
+        set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn identify<'py>(
         &self,
@@ -419,9 +428,12 @@ impl Model {
     ///
     /// `minimize` and `maximize` are numbers such as "max |pin.force|", `subject` what has to be fulfilled, such as
     /// "mean(speed) > 30"; `by` are names, each with bounds where they are narrower, "length=0.5..0.9". Two goals give
-    /// their front in `points`. Gives a dict: `best`, `searches` and `front`, each with `parameters`, `goals`, `subjects`,
-    /// `feasible`, `converged`, `end`; `trials`, a table of all runs. Raises ValueError where nothing can be sought.
-    #[pyo3(signature = (scene=None, *, minimize=None, maximize=None, subject=None, by=None, starts=1, points=9, steps=50, threads=0, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, inputs=None, set=None, **parameters))]
+    /// their front in `points`. Gives a dict: `best`, `searches` and `front`, each with `parameters`, `goals`,
+    /// `subjects`, `feasible`, `converged`, `end`; `trials`, a table of all runs. Raises ValueError where nothing can
+    /// be sought.
+    #[pyo3(signature = (scene=None, *, minimize=None, maximize=None, subject=None, by=None, starts=1, points=9,
+        steps=50, threads=0, t_end=None, step=None, method=None, hint=None, rtol=None, atol=None, inputs=None,
+        set=None, **parameters))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of a Python function")]
     fn optimize<'py>(
         &self,

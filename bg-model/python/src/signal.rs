@@ -1,7 +1,7 @@
 //! What Python gives for an input: a number, a text, a table, a function of time.
 //!
-//! In: an object. Out: what the workbench takes. A function is called where the run is made, with Python's lock; what it
-//! raises is remembered and ends the run, since it has no value there.
+//! In: an object. Out: what the workbench takes. A function is called where the run is made, with Python's lock; what
+//! it raises is remembered and ends the run, since it has no value there.
 
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -63,8 +63,8 @@ pub(crate) fn input(name: &str, value: &Bound<'_, PyAny>, raised: &Raised) -> Py
     }
     let (times, values) = columns(value).map_err(|_| {
         PyValueError::new_err(format!(
-            "inputs: `{name}`: give a number, a text such as \"12 kN\" or \"{name}.csv\", a pair of arrays (t, values), rows \
-             such as [[0, 0], [1, 5]], or a function of t"
+            "inputs: `{name}`: give a number, a text such as \"12 kN\" or \"{name}.csv\", a pair of arrays (t, \
+             values), rows such as [[0, 0], [1, 5]], or a function of t"
         ))
     })?;
     Ok(Signal::Setting(Setting::Table { times, values, cubic: false, source: None }))

@@ -8,8 +8,8 @@ use pyo3::types::{PyDict, PyFloat, PyList, PyType};
 
 /// Columns of the same length by name: `table["force_x"]` is a NumPy array.
 ///
-/// A run has the time `t` in s first, then the outputs; `info` says how it was made, with which inputs, and what it took.
-/// A sweep has a row for each run.
+/// A run has the time `t` in s first, then the outputs; `info` says how it was made, with which inputs, and what it
+/// took. A sweep has a row for each run.
 #[pyclass(frozen, mapping, name = "Table")]
 pub struct Table {
     columns: Py<PyDict>,

@@ -116,9 +116,9 @@ impl Bar {
     }
 }
 
-/// Does `work` in another thread, without Python's lock; `work` is handed who waits. What takes long has a bar, if it says
-/// how far it is. After Ctrl-C runs end with their step; what does not ask for so long as [`PATIENCE`] is left to itself: a
-/// text being compiled, eigenvalues. It comes to its end unseen, and what it gives is dropped.
+/// Does `work` in another thread, without Python's lock; `work` is handed who waits. What takes long has a bar, if it
+/// says how far it is. After Ctrl-C runs end with their step; what does not ask for so long as [`PATIENCE`] is left to
+/// itself: a text being compiled, eigenvalues. It comes to its end unseen, and what it gives is dropped.
 ///
 /// # Errors
 /// What Python's signal handlers raise meanwhile.

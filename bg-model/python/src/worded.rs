@@ -1,8 +1,8 @@
 //! Sentences of the command line in Python's words.
 //!
 //! In: a sentence that names options as `--t-end`, `--starts 8`, `--input push=3`, and commands. Out: the same with the
-//! arguments of Python's functions, `t_end=`, `starts=8`, `inputs={"push": 3}`, and these functions. Method: an option is
-//! what begins with two dashes and a letter; what stands after it and looks like its value goes with it.
+//! arguments of Python's functions, `t_end=`, `starts=8`, `inputs={"push": 3}`, and these functions. Method: an option
+//! is what begins with two dashes and a letter; what stands after it and looks like its value goes with it.
 
 use std::borrow::Cow;
 use std::iter;

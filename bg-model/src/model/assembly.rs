@@ -80,8 +80,8 @@ pub enum AssemblyError {
     /// Some joints are torn apart by the start velocities, by more than the part
     /// [`FITTING`](crate::model::holding::FITTING) of what could move there.
     #[error(
-        "the start velocities do not fit: joint {largest} (allowed: {allowed:.0e}){}; correct them, give `guess(..)` to \
-         those that may change{}",
+        "the start velocities do not fit: joint {largest} (allowed: {allowed:.0e}){}; \
+         correct them, give `guess(..)` to those that may change{}",
         also_torn(.others), or_impulse(.largest)
     )]
     Torn {
@@ -97,8 +97,8 @@ pub enum AssemblyError {
     Redundant(Redundancy),
     /// Rigid joints leave no motion, and no source gives one.
     #[error(
-        "the mechanism cannot move: rigid joints {} hold it together in every direction; leave one of them out, make it \
-         compliant, or give it another free axis", quoted(.joints)
+        "the mechanism cannot move: rigid joints {} hold it together in every direction; \
+         leave one of them out, make it compliant, or give it another free axis", quoted(.joints)
     )]
     Immobile {
         /// The joints that clash: those that hold what others hold, or all where each holds something of its own.

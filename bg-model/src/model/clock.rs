@@ -1,7 +1,7 @@
 //! Clocks: the instants at which samples are computed.
 //!
-//! In: the switches and times of a system's clocks. Out: which instants are next. Instant k of a clock is first + k period, calculated from k, so that nothing adds up. Instants of several clocks that differ by
-//! rounding are one.
+//! In: the switches and times of a system's clocks. Out: which instants are next. Instant k of a clock is first + k
+//! period, calculated from k, so that nothing adds up. Instants of several clocks that differ by rounding are one.
 
 use alloc::vec;
 use alloc::vec::Vec;

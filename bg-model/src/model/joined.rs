@@ -8,7 +8,8 @@ use alloc::vec::Vec;
 use crate::model::scalar::Scalar;
 
 /// The numbers of all tables, one table after the other: `of` makes each of those of all models in the same place, and
-/// `table` is the table of a model by the numbers of both. Compiled once for each kind of numbers, and not for each model.
+/// `table` is the table of a model by the numbers of both. Compiled once for each kind of numbers, and not for each
+/// model.
 pub fn joined<'a, S: Scalar, T: Scalar>(
     models: usize,
     tables: usize,

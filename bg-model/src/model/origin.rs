@@ -31,7 +31,8 @@ impl Origin {
             }
             "table" => "its argument is beyond its points: add points, or write `held` or `continued` after them",
             "closed loop" => {
-                "the mechanism comes to a pose there in which a dependent body may turn either way: leave it out of `dependent`"
+                "the mechanism comes to a pose there in which a dependent body may turn either way: leave it out of \
+                `dependent`"
             }
             _ => "keep what its law divides by, or takes a root, power or logarithm of, in range",
         }

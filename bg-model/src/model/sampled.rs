@@ -32,8 +32,8 @@ pub(crate) fn decide<S: Scalar>(
     }
 }
 
-/// Computes the samples of the clocks with these switches at time `t` (s) in state `x`, whose switches have the branches
-/// `negative`. Everything else of the state stays. Allocates.
+/// Computes the samples of the clocks with these switches at time `t` (s) in state `x`, whose switches have the
+/// branches `negative`. Everything else of the state stays. Allocates.
 pub(crate) fn compute<S: Scalar>(system: &dyn Dynamics<S>, ticking: &[usize], t: S, negative: &[bool], x: &mut [S]) {
     let remembers = system.first_branches();
     let mut room = vec![S::from_f64(0.0); 2 * negative.len()];
@@ -68,8 +68,8 @@ pub(crate) fn compute_due<S: Scalar>(
     compute(system, &due, S::from_f64(t), negative, x);
 }
 
-/// The state of `system` after the samples of all clocks are computed that have an instant at `t` (s), from the state `x`
-/// before, whose switches have the branches `negative`, or those of their signs. Allocates.
+/// The state of `system` after the samples of all clocks are computed that have an instant at `t` (s), from the state
+/// `x` before, whose switches have the branches `negative`, or those of their signs. Allocates.
 #[must_use]
 pub fn computed(system: &dyn Dynamics, t: f64, x: &[f64], negative: Option<&[bool]>) -> Vec<f64> {
     let (clocks, mut after) = (system.clocks(), x.to_vec());

@@ -41,8 +41,8 @@ const ASIDE: f64 = 1e-6;
 pub enum Misplaced {
     /// An orientation is no rotation.
     #[error(
-        "the orientation `{name}` is no rotation: its columns must have length 1 and be at right angles, they are off by \
-         {off:.2e} (allowed: {allowed:.0e})"
+        "the orientation `{name}` is no rotation: its columns must have length 1 and be at right angles, they are off \
+         by {off:.2e} (allowed: {allowed:.0e})"
     )]
     NoRotation {
         /// Its name.
@@ -207,11 +207,11 @@ impl<'a> Standing<'a> {
         Ok(x)
     }
 
-    /// A state that has turned from the start, whatever the momenta, with its rates: there no component of an orientation
-    /// is 0, nor its rate, but where it stays so.
+    /// A state that has turned from the start, whatever the momenta, with its rates: there no component of an
+    /// orientation is 0, nor its rate, but where it stays so.
     fn turned(&self) -> Option<[Vec<f64>; 2]> {
-        /// How much the fastest component turns in a step, and how many there are: together a part of a turn, after which an
-        /// orientation is still a rotation to far less than [`CLOSE`].
+        /// How much the fastest component turns in a step, and how many there are: together a part of a turn, after
+        /// which an orientation is still a rotation to far less than [`CLOSE`].
         const STEP: f64 = 0.01;
         const STEPS: usize = 16;
         let mut x = self.start.clone()?;

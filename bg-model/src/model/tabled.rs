@@ -1,9 +1,10 @@
-//! Straight-line programs as tables, for numbers in which a model calculates seldom: what is generated for doubles is not
-//! compiled for these as well.
+//! Straight-line programs as tables, for numbers in which a model calculates seldom: what is generated for doubles is
+//! not compiled for these as well.
 //!
-//! In: the table that the compiler wrote (`bg_expressions::schedule::batches`), what its program reads. Out: its results,
-//! with the bits of straight code, since each operation and its operands are the program's. Values stand in one row: what
-//! is read, then what operations give, in batches of one kind each; what a batch reads stands before what it writes.
+//! In: the table that the compiler wrote (`bg_expressions::schedule::batches`), what its program reads. Out: its
+//! results, with the bits of straight code, since each operation and its operands are the program's. Values stand in
+//! one row: what is read, then what operations give, in batches of one kind each; what a batch reads stands before what
+//! it writes.
 //!
 //! A table is words of four bytes, the lowest first. A batch is its kind, the function where it has one, how many
 //! operations there are, then the operands of each: places in the row, the halves of a number, the number of a switch.
@@ -173,7 +174,8 @@ mod tests {
         words.iter().flat_map(|word| word.to_le_bytes()).collect()
     }
 
-    /// Of states x, y and a constant c: 2.5 (x + c), x - c, atan2 of both, the first where a switch is negative, a number.
+    /// Of states x, y and a constant c: 2.5 (x + c), x - c, atan2 of both, the first where a switch is negative, a
+    /// number.
     #[test]
     fn a_table_gives_what_its_operations_say() {
         let half = 2.5_f64.to_bits();

@@ -78,8 +78,8 @@ pub enum Cause {
     },
     /// The equations of an implicit step of a fixed size were not solved.
     #[error(
-        "the equations of the step of {h:.2e} s from t = {t:?} s were not solved: the iteration does not converge; try a \
-         smaller step, or an integrator that chooses its steps"
+        "the equations of the step of {h:.2e} s from t = {t:?} s were not solved: the iteration does not converge; \
+         try a smaller step, or an integrator that chooses its steps"
     )]
     NotSolved {
         /// The start of the step, s.
@@ -89,8 +89,8 @@ pub enum Cause {
     },
     /// The limit of steps was reached.
     #[error(
-        "the limit of {limit} attempted steps is used up at t = {t:?} s; the last step was {h:.2e} s. Raise the limit, or for \
-         a stiff problem choose an implicit integrator"
+        "the limit of {limit} attempted steps is used up at t = {t:?} s; \
+         the last step was {h:.2e} s. Raise the limit, or for a stiff problem choose an implicit integrator"
     )]
     TooManySteps {
         /// The limit.
@@ -115,7 +115,8 @@ pub enum Cause {
     },
     /// The steps creep into a singular pose, in which the joints do not say which way the mechanism goes on.
     #[error(
-        "at t = {t:?} s the steps creep into a singular pose, in which {redundancy}; explicit methods and `taylor` pass such a pose"
+        "at t = {t:?} s the steps creep into a singular pose, in which {redundancy}; \
+        explicit methods and `taylor` pass such a pose"
     )]
     Singular {
         /// Which joints.
@@ -137,8 +138,8 @@ pub enum Cause {
     },
     /// A loop whose links follow in closed form comes to a pose where they may turn either way.
     #[error(
-        "the loop that `{joint}` closes comes to its end at t = {t:?} s, a pose in which a dependent body may turn either \
-         way: leave it out of `dependent`"
+        "the loop that `{joint}` closes comes to its end at t = {t:?} s, a pose in which a dependent body may turn \
+         either way: leave it out of `dependent`"
     )]
     LoopEnds {
         /// The joint that closes it.
@@ -226,8 +227,8 @@ pub enum BadInput {
     },
     /// The integrator needs the Taylor series of the system.
     #[error(
-        "the integrator {method} needs the system's Taylor series, which there is not where an input changes with time, nor \
-         of a system written by hand without one; choose another integrator"
+        "the integrator {method} needs the system's Taylor series, which there is not where an input changes with \
+         time, nor of a system written by hand without one; choose another integrator"
     )]
     NoSeries {
         /// The integrator's name.

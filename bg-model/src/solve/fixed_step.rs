@@ -72,20 +72,20 @@ pub enum Unfit {
     },
     /// Stops give back speed: what an impact takes is known only when it happens.
     #[error(
-        "a stop with a restitution makes the state jump, at a cost that is not the same in every step; make it a spring \
-         with a damper"
+        "a stop with a restitution makes the state jump, at a cost that is not the same in every step; \
+         make it a spring with a damper"
     )]
     Impacts,
     /// Something sticks, or rests against a stop: its motion is zero from the very instant on at which it ends.
     #[error(
-        "dry friction that sticks, or a stop that holds, needs the instant at which the motion ends, and no step is cut \
-         short here; give it a smooth law, such as f * tanh(v / v0)"
+        "dry friction that sticks, or a stop that holds, needs the instant at which the motion ends, and no step is \
+         cut short here; give it a smooth law, such as f * tanh(v / v0)"
     )]
     Sticking,
     /// A signal is delayed at any time: its past takes room that is not known before the run.
     #[error(
-        "a delay of a signal at any time keeps the past, which has no room of a fixed size here; delay a sample in a block \
-         `every` in its place"
+        "a delay of a signal at any time keeps the past, which has no room of a fixed size here; \
+         delay a sample in a block `every` in its place"
     )]
     Delays,
 }

@@ -11,7 +11,8 @@ bond_graph! {
         param torque: N*m = 1.5;
         gravity [0, -9.81, 0];
         ground { point pivot = [0, 0, 0]; }
-        body rod { mass 2; inertia [0.1, 0.1, 0.1]; point end = [-0.5, 0, 0]; start end at [0, 0, 0]; start turned rotation_z(angle); }
+        body rod { mass 2; inertia [0.1, 0.1, 0.1]; point end = [-0.5, 0, 0]; start end at [0, 0, 0];
+            start turned rotation_z(angle); }
         joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
         friction seat on pin { coulomb torque; }
         observe { angle: rad = pin.angle; speed: rad/s = pin.speed; seat.effort }
@@ -22,8 +23,10 @@ bond_graph! {
     graph Journal {
         gravity [0, -9.81, 0];
         ground { point pivot = [0, 0, 0]; }
-        body rod { mass 2; inertia [0.1, 0.1, 0.1]; point end = [-0.5, 0, 0]; start end at [0, 0, 0]; start turned rotation_z(-0.4); }
-        joint pin: revolute z (ground.pivot -> rod.end) { stiffness 1e5; damping 100; tilt stiffness 1e3; tilt damping 1; }
+        body rod { mass 2; inertia [0.1, 0.1, 0.1]; point end = [-0.5, 0, 0]; start end at [0, 0, 0];
+            start turned rotation_z(-0.4); }
+        joint pin: revolute z (ground.pivot -> rod.end) { stiffness 1e5; damping 100; tilt stiffness 1e3;
+            tilt damping 1; }
         friction seat on pin { coulomb 0.2; static 0.3; stribeck 0.1; viscous 1e-3; radius 0.1; }
         observe { angle: rad = pin.angle; speed: rad/s = pin.speed; seat.effort; force: N = norm(pin.force) }
     }
@@ -33,7 +36,8 @@ bond_graph! {
         gravity [9.81 * sin(slope), -9.81 * cos(slope), 0];
         ground { point plane = [0, 0, 0]; }
         body block { mass 3; inertia [0.1, 0.1, 0.1]; }
-        joint guide: prismatic x (ground.plane -> block) { stiffness [0, 1e5, 1e5]; damping 300; tilt stiffness 1e4; tilt damping 10; }
+        joint guide: prismatic x (ground.plane -> block) { stiffness [0, 1e5, 1e5]; damping 300; tilt stiffness 1e4;
+            tilt damping 10; }
         friction rub on guide { coulomb 0.4; normal guide.force.y; }
         observe { v: m/s = block.velocity.x; u: m/s = block.velocity.y }
     }
@@ -57,7 +61,8 @@ bond_graph! {
         1 slide: translation; I sledge = 3 start 6;
         stop ends on slide { at most 0.2; at least -0.1; stiffness 1e4; damping 20; }
         slide -> sledge;
-        observe { x: m = ends.spring.q; v: m/s = slide.flow; ends.effort; energy: J = stored_energy; lost: J = integral(dissipated_power) }
+        observe { x: m = ends.spring.q; v: m/s = slide.flow; ends.effort; energy: J = stored_energy;
+            lost: J = integral(dissipated_power) }
     }
     /// A weight that falls on a floor, and a carriage that runs against the end of its guide.
     graph Weight {
@@ -67,7 +72,8 @@ bond_graph! {
         body carriage { mass 3; inertia [0.1, 0.1, 0.1]; start velocity [2, 0, 0]; }
         joint guide: prismatic x (ground.middle -> carriage) { rigid; }
         friction rub on guide { coulomb 5; } stop end on guide { at most 0.2; stiffness 1e4; }
-        observe { y: m = floor.spring.q; u: m/s = fall.flow; force: N = floor.effort; x: m = guide.travel; v: m/s = guide.slide.flow }
+        observe { y: m = floor.spring.q; u: m/s = fall.flow; force: N = floor.effort; x: m = guide.travel;
+            v: m/s = guide.slide.flow }
     }
     /// A mass that creeps under a load below the dry friction.
     graph Creep {
@@ -103,7 +109,8 @@ fn zero(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// Where it turns and, in the end, where it rests: the weight's work from one turn to the next is what the friction takes.
+/// Where it turns and, in the end, where it rests: the weight's work from one turn to the next is what the friction
+/// takes.
 fn rest(mut angle: f64, torque: f64) -> f64 {
     let weight = 2.0 * 9.81 * 0.5;
     while weight * angle.cos().abs() > torque {
@@ -151,8 +158,8 @@ fn a_journal_rubs_with_the_force_of_its_pin() {
     }
 }
 
-/// The normal force has brought the block's fall into the plane to rest: m u' = N - m g cos a, so that the friction has taken
-/// mu (g cos a T + u) of the speed along the plane.
+/// The normal force has brought the block's fall into the plane to rest: m u' = N - m g cos a, so that the friction has
+/// taken mu (g cos a T + u) of the speed along the plane.
 #[test]
 fn a_block_on_an_incline_slides_by_its_normal_force() {
     for method in adaptive() {
@@ -165,8 +172,9 @@ fn a_block_on_an_incline_slides_by_its_normal_force() {
     }
 }
 
-/// Reference: `CoupledClutches_ref.csv` of Dymola 2016, FMI cross-check repository of the Modelica Association, fmus/2.0/me/win64;
-/// of three digits: at 0.3 s its first speed is 1.2e-3 from the exact one. As long as only the first clutch has been pressed, the speeds are integrals.
+/// Reference: `CoupledClutches_ref.csv` of Dymola 2016, FMI cross-check repository of the Modelica Association,
+/// fmus/2.0/me/win64; of three digits: at 0.3 s its first speed is 1.2e-3 from the exact one. As long as only the first
+/// clutch has been pressed, the speeds are integrals.
 #[test]
 fn coupled_clutches_are_those_of_the_modelica_library() {
     let reference = [
@@ -230,7 +238,8 @@ fn what_falls_on_a_stop_rests_on_it() {
         let run = run(&Weight::new(WeightParameters::default()).expect("in range"), method, 30.0, 30.0);
         assert!((run["y"][1] + 19.62 / 1e4).abs() < 1e-9, "{}: {}", method.name(), run["y"][1]);
         assert!((run["force"][1] + 19.62).abs() < 1e-6, "{}: {}", method.name(), run["force"][1]);
-        // 6 J go into 5 N of friction over 1.2 m, but for what is the way beyond the stop: it comes to rest at 0.2 - 1.0.
+        // 6 J go into 5 N of friction over 1.2 m, but for what is the way beyond the stop: it comes to rest at 0.2 -
+        // 1.0.
         let depth = zero(0.0, 0.1, |depth| 6.0 - 5.0 * (0.2 + depth) - 0.5e4 * depth * depth);
         let place = 0.2 + depth - (1.2 - 0.2 - depth);
         assert!((run["x"][1] - place).abs() < 1e-7, "{}: {} {place}", method.name(), run["x"][1]);

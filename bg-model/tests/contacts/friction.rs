@@ -54,7 +54,8 @@ bond_graph! {
     }
     /// Two brakes on one shaft.
     graph Brakes {
-        1 shaft: rotation; I rotor = 2; R first(w) = 3 holds 3; R second(w) = 1 + 1 * w holds 2; MSe motor = 8 * sin(t / 1);
+        1 shaft: rotation; I rotor = 2; R first(w) = 3 holds 3; R second(w) = 1 + 1 * w holds 2;
+        MSe motor = 8 * sin(t / 1);
         motor -> shaft -> rotor; shaft -> first; shaft -> second;
         observe { w: rad/s = shaft.flow; first.effort; second.effort }
     }
@@ -85,7 +86,8 @@ bond_graph! {
         C kab = k1; C kbc = k2; R gab(v) = g1 holds more * g1; R gbc(v) = g2 holds g2;
         pull -> a -> ma; a -> ra; b -> mb; b -> rb; c -> mc; c -> rc;
         a -> ab -> b -> bc -> c; ab -> sab -> kab; sab -> gab; bc -> sbc -> kbc; sbc -> gbc;
-        observe { stored: J = stored_energy; supplied: J = integral(supplied_power); lost: J = integral(dissipated_power) }
+        observe { stored: J = stored_energy; supplied: J = integral(supplied_power);
+            lost: J = integral(dissipated_power) }
     }
 }
 
@@ -159,7 +161,8 @@ fn a_block_that_is_thrown_up_stops_and_sticks_or_slides_back() {
     }
 }
 
-/// x'' m + k x = F while it slides; the amplitude falls by 2 F / k in each half period pi / w, until it is within F / k.
+/// x'' m + k x = F while it slides; the amplitude falls by 2 F / k in each half period pi / w, until it is within F /
+/// k.
 #[test]
 fn an_oscillator_comes_to_rest_where_the_spring_is_within_the_friction() {
     let half = std::f64::consts::PI / 5.0;

@@ -23,7 +23,8 @@ bond_graph! {
         stop floor on fall { at least 0; start height; restitution give; }
         observe {
             y: m = floor.place; v: m/s = fall.flow; floor.effort; stored: J = stored_energy;
-            supplied: J = integral(supplied_power); lost: J = integral(dissipated_power); impulse: N*s = integral(floor.effort)
+            supplied: J = integral(supplied_power); lost: J = integral(dissipated_power);
+            impulse: N*s = integral(floor.effort)
         }
     }
     /// Two rods in a chain; the upper one swings against a stop.
@@ -32,15 +33,19 @@ bond_graph! {
         param spin: rad/s = 0;
         gravity [0, -9.81, 0];
         ground { point O = [0, 0, 0]; }
-        body upper { mass 2; inertia [0.05, 0.05, 0.05]; point a = [-0.3, 0, 0]; point b = [0.4, 0, 0]; start a at [0, 0, 0]; }
-        body lower { mass 1; inertia [0.02, 0.02, 0.02]; point b = [-0.2, 0, 0]; start b at [0.7, 0, 0]; start turned rotation_z(guess(-0.5)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin]; }
+        body upper { mass 2; inertia [0.05, 0.05, 0.05]; point a = [-0.3, 0, 0]; point b = [0.4, 0, 0];
+            start a at [0, 0, 0]; }
+        body lower { mass 1; inertia [0.02, 0.02, 0.02]; point b = [-0.2, 0, 0]; start b at [0.7, 0, 0];
+            start turned rotation_z(guess(-0.5)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin]; }
         joint shoulder: revolute z (ground.O -> upper.a) { rigid; }
         joint elbow: revolute z (upper.b -> lower.b) { rigid; }
         stop bumper on shoulder { at least -1.2; restitution give; }
         observe {
-            angle: rad = shoulder.angle; other: rad = lower.angle; w1: rad/s = shoulder.speed; w2: rad/s = lower.angular_velocity.z;
+            angle: rad = shoulder.angle; other: rad = lower.angle; w1: rad/s = shoulder.speed;
+            w2: rad/s = lower.angular_velocity.z;
             slip: m/s = norm(elbow.slip.flow); stored: J = stored_energy; supplied: J = integral(supplied_power);
-            lost: J = integral(bumper.power); impulse: N*m*s = integral(bumper.effort); pull: N*s = integral(elbow.force.x)
+            lost: J = integral(bumper.power); impulse: N*m*s = integral(bumper.effort);
+            pull: N*s = integral(elbow.force.x)
         }
         scenes only;
         scene Chain { expect planar; }
@@ -51,16 +56,22 @@ bond_graph! {
     graph Loop {
         param give: 1 = 0.7;
         ground { point O = [0, 0, 0]; }
-        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(1); start velocity [guess(0), guess(0), 0]; start spin [0, 0, -8]; }
-        body rod { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.3, 0, 0]; point c = [0.3, 0, 0]; start b at [0.2 * cos(1), 0.2 * sin(1), 0]; start turned rotation_z(guess(-0.3)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
-        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0]; start velocity [guess(0), guess(0), 0]; }
+        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-0.1, 0, 0]; point b = [0.1, 0, 0];
+            start a at [0, 0, 0]; start turned rotation_z(1); start velocity [guess(0), guess(0), 0];
+            start spin [0, 0, -8]; }
+        body rod { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-0.3, 0, 0]; point c = [0.3, 0, 0];
+            start b at [0.2 * cos(1), 0.2 * sin(1), 0]; start turned rotation_z(guess(-0.3));
+            start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
+        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0];
+            start velocity [guess(0), guess(0), 0]; }
         joint pin_o: revolute z (ground.O -> crank.a) { rigid; }
         joint pin_a: revolute z (crank.b -> rod.b) { rigid; }
         joint pin_b: revolute z (rod.c -> slider) { rigid; }
         joint guide: prismatic x (ground.O -> slider) { rigid; }
         stop ends on guide { at most 0.77; at least 0.5; restitution give; }
         observe {
-            x: m = guide.travel; v: m/s = slider.velocity.x; slip: m/s = norm(pin_a.slip.flow); stored: J = stored_energy;
+            x: m = guide.travel; v: m/s = slider.velocity.x; slip: m/s = norm(pin_a.slip.flow);
+            stored: J = stored_energy;
             lost: J = integral(dissipated_power); impulse: N*s = integral(ends.effort)
         }
         scenes only;
@@ -71,7 +82,8 @@ bond_graph! {
         Se torque = 0.5; 1 shaft: rotation; I rotor = 1e-3; TF gear = 0.25; 1 hub: rotation; I wheel = 0.02;
         torque -> shaft -> rotor; shaft -> gear -> hub -> wheel;
         stop catch on hub { at most 2; restitution 0.5; rest below 1e-3; }
-        observe { place: rad = catch.place; hub: rad/s = hub.flow; shaft: rad/s = shaft.flow; impulse: N*m*s = integral(catch.effort); catch.effort }
+        observe { place: rad = catch.place; hub: rad/s = hub.flow; shaft: rad/s = shaft.flow;
+            impulse: N*m*s = integral(catch.effort); catch.effort }
     }
     /// A bar on two supports under its ends.
     graph Bar {
@@ -95,8 +107,10 @@ bond_graph! {
         stop left on a { at least 0; start height + reach * tilt; restitution give; }
         stop right on b { at least 0; start height - reach * tilt; restitution give; }
         observe {
-            ya: m = left.place; yb: m = right.place; va: m/s = a.flow; vb: m/s = b.flow; la: N*s = integral(left.effort); lb: N*s = integral(right.effort);
-            left.effort; right.effort; stored: J = stored_energy; supplied: J = integral(supplied_power); lost: J = integral(dissipated_power)
+            ya: m = left.place; yb: m = right.place; va: m/s = a.flow; vb: m/s = b.flow;
+            la: N*s = integral(left.effort); lb: N*s = integral(right.effort);
+            left.effort; right.effort; stored: J = stored_energy; supplied: J = integral(supplied_power);
+            lost: J = integral(dissipated_power)
         }
     }
     /// Three masses in a row, each of which may hit the next.
@@ -107,7 +121,8 @@ bond_graph! {
         0 ab, bc: translation; 1 sab, sbc: translation; a -> ab -> b; ab -> sab; b -> bc -> c; bc -> sbc;
         stop first on sab { at most 0.1; restitution give; }
         stop second on sbc { at most gap; restitution give; }
-        observe { va: m/s = a.flow; vb: m/s = b.flow; vc: m/s = c.flow; stored: J = stored_energy; lost: J = integral(dissipated_power) }
+        observe { va: m/s = a.flow; vb: m/s = b.flow; vc: m/s = c.flow; stored: J = stored_energy;
+            lost: J = integral(dissipated_power) }
     }
     /// A block on a contact's line.
     graph Line {
@@ -122,8 +137,10 @@ bond_graph! {
     graph Train {
         param m1: kg = 1, above 0; param m2: kg = 1, above 0; param m3: kg = 1, above 0;
         param k1: N/m = 10, at least 0; param k2: N/m = 10, at least 0;
-        param f1: N = 1, at least 0; param f2: N = 1, at least 0; param f3: N = 1, at least 0; param g1: N = 1, at least 0;
-        param e1: 1 = 0.5, at least 0, at most 1; param e2: 1 = 0.5, at least 0, at most 1; param e3: 1 = 0, at least 0, at most 1;
+        param f1: N = 1, at least 0; param f2: N = 1, at least 0; param f3: N = 1, at least 0;
+        param g1: N = 1, at least 0;
+        param e1: 1 = 0.5, at least 0, at most 1; param e2: 1 = 0.5, at least 0, at most 1;
+        param e3: 1 = 0, at least 0, at most 1;
         param push: N = 4; param frequency: rad/s = 2; param v1: m/s = 0; param v3: m/s = 0;
         1 a, b, c: translation; I ma = m1 start m1 * v1; I mb = m2; I mc = m3 start m3 * v3;
         MSe pull = push * sin(frequency * t);
@@ -218,7 +235,8 @@ fn ball(give: f64) -> Ball {
     Ball::new(BallParameters { give, ..Default::default() }).expect("in range")
 }
 
-/// Falls for v / g, then the k-th bounce begins with e^k v and takes 2 e^k v / g: at rest after v / g (1 + e) / (1 - e).
+/// Falls for v / g, then the k-th bounce begins with e^k v and takes 2 e^k v / g: at rest after v / g (1 + e) / (1 -
+/// e).
 #[test]
 fn a_ball_bounces_at_the_instants_of_its_closed_form_and_comes_to_rest() {
     let (gravity, height): (f64, f64) = (9.81, 1.25);
@@ -372,8 +390,9 @@ fn a_storage_in_derivative_causality_takes_part() {
         // It rests from the bounce that would begin below 1e-3 rad/s on.
         let bounces = (speed / 1e-3).log2().ceil() as usize;
         assert_eq!(events.len(), bounces, "{name}");
-        // The reaction draws what an impact leaves of the speed to zero within some seconds. One step of the series is longer than that and
-        // errs by a part of the tolerance: 1e-11 of the rotor's momentum is 2.5e-9 rad/s of the hub, for which the reaction gives 2e-10 N m.
+        // The reaction draws what an impact leaves of the speed to zero within some seconds. One step of the series is
+        // longer than that and errs by a part of the tolerance: 1e-11 of the rotor's momentum is 2.5e-9 rad/s of the
+        // hub, for which the reaction gives 2e-10 N m.
         let [speed, effort] = if integrator == Integrator::Taylor { [2.5e-9, 2e-10] } else { [1e-13, 1e-12] };
         assert!(last[1].abs() < speed && (last[4] - 2.0).abs() < effort, "{name}: {last:?}");
     }
@@ -407,8 +426,8 @@ fn two_stops_at_once_give_back_both() {
     }
 }
 
-/// It turns about the end on which it rests until the other end comes down, e = 0. That impulse L throws up the first end by
-/// (1 / m - a^2 / J) L, or presses it down where that is negative.
+/// It turns about the end on which it rests until the other end comes down, e = 0. That impulse L throws up the first
+/// end by (1 / m - a^2 / J) L, or presses it down where that is negative.
 #[test]
 fn an_end_that_rests_stays_or_is_thrown_up() {
     for integrator in Integrator::ALL.into_iter().filter(|integrator| !integrator.has_fixed_step()) {
@@ -430,8 +449,8 @@ fn an_end_that_rests_stays_or_is_thrown_up() {
     }
 }
 
-/// With 1 / m + a^2 / J = 0.6 and 1 / m - a^2 / J = 0.4 the left end's impulse, 1.5 * 4 / 0.6, throws the right end up from -1 to 3:
-/// faster than its own restitution asks, so that its support has nothing to give.
+/// With 1 / m + a^2 / J = 0.6 and 1 / m - a^2 / J = 0.4 the left end's impulse, 1.5 * 4 / 0.6, throws the right end up
+/// from -1 to 3: faster than its own restitution asks, so that its support has nothing to give.
 #[test]
 fn several_stops_give_no_impulse_that_pulls() {
     let parameters = BarParameters { height: 0.0, reach: 0.1, fall: -2.5, turn: -15.0, ..Default::default() };
@@ -442,8 +461,9 @@ fn several_stops_give_no_impulse_that_pulls() {
     }
 }
 
-/// It comes down flat and without a rebound, and then is lifted and turned: the efforts l of the supports and the accelerations b towards
-/// them without any obey A l = b, where 3 is on A's diagonal and -2 beside it, or b is not above 0 where l is 0.
+/// It comes down flat and without a rebound, and then is lifted and turned: the efforts l of the supports and the
+/// accelerations b towards them without any obey A l = b, where 3 is on A's diagonal and -2 beside it, or b is not
+/// above 0 where l is 0.
 #[test]
 fn of_several_stops_those_bear_the_load_that_do_not_pull() {
     for integrator in Integrator::ALL.into_iter().filter(|integrator| !integrator.has_fixed_step()) {
@@ -458,9 +478,9 @@ fn of_several_stops_those_bear_the_load_that_do_not_pull() {
             // The supports press in the direction of what leaves.
             [-after[6], -after[7]]
         };
-        // b = 9.81, 9.81; then the left one would pull by 4.9 N, and the right one bears (9.81 + 73.575) / 3 alone; the same the other way.
-        // Lifted by 1 m/s^2 and turned by 4 rad/s^2, b = -3, 1: both would pull; without the right one the left one would; without both
-        // the right one is moved towards, and bears 1 / 3.
+        // b = 9.81, 9.81; then the left one would pull by 4.9 N, and the right one bears (9.81 + 73.575) / 3 alone; the
+        // same the other way. Lifted by 1 m/s^2 and turned by 4 rad/s^2, b = -3, 1: both would pull; without the right
+        // one the left one would; without both the right one is moved towards, and bears 1 / 3.
         for (lift, twist, expected) in [
             (0.0, 0.0, [9.81, 9.81]),
             (0.0, 14.715, [0.0, 27.795]),

@@ -169,9 +169,8 @@ fn a_state_beyond_a_stop_is_refused_with_its_name_and_by_how_much() {
     let fallen = Simulation::new(&model).every(0.1).until(0.2).run().unwrap();
     let raised = ball(BallParameters { level: 0.9, ..BallParameters::default() });
     let fault = Simulation::new(&raised).from(&fallen.last).until(1.0).run().unwrap_err();
-    assert!(
-        matches!(refused(fault), Misplaced::Beyond { by, .. } if (by - (0.9 - fallen["y"].last().unwrap())).abs() < 1e-12)
-    );
+    assert!(matches!(refused(fault), Misplaced::Beyond { by,
+            .. } if (by - (0.9 - fallen["y"].last().unwrap())).abs() < 1e-12));
     let mut fallen = fallen;
     assert!(matches!(refused(fallen.continue_until(&raised, 1.0).unwrap_err()), Misplaced::Beyond { .. }));
 }

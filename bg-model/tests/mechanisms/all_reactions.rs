@@ -13,7 +13,8 @@ mod pins {
         pub graph Pins {
             gravity [0, -9.81, 0];
             ground { point O = [0, 0, 0]; }
-            body upper { cuboid [0.5, 0.03, 0.03] at [0.25, 0, 0] density 2700; point tip = [0.5, 0, 0]; start at [0, 0, 0]; }
+            body upper { cuboid [0.5, 0.03, 0.03] at [0.25, 0, 0] density 2700; point tip = [0.5, 0, 0];
+                start at [0, 0, 0]; }
             body lower {
                 cuboid [0.3, 0.02, 0.02] at [0.15, 0, 0] density 7850;
                 start at [0.5, 0, 0];
@@ -38,8 +39,10 @@ mod slide {
         pub graph Slide {
             gravity [0, -9.81, 0];
             ground { point O = [0, 0, 0]; }
-            body crank { cuboid [0.1, 0.03, 0.02] at [0.05, 0, 0] density 7850; point tip = [0.1, 0, 0]; start at [0, 0, 0]; }
-            body rod { cuboid [0.35, 0.02, 0.02] at [0.175, 0, 0] density 2700; point head = [0.35, 0, 0]; start at [0.1, 0, 0]; }
+            body crank { cuboid [0.1, 0.03, 0.02] at [0.05, 0, 0] density 7850; point tip = [0.1, 0, 0];
+                start at [0, 0, 0]; }
+            body rod { cuboid [0.35, 0.02, 0.02] at [0.175, 0, 0] density 2700; point head = [0.35, 0, 0];
+                start at [0.1, 0, 0]; }
             body slider { cuboid [0.06, 0.05, 0.04] density 7850; start at [0.45, 0, 0]; }
             joint main: revolute z (ground.O -> crank) { rigid; }
             joint pin: revolute z (crank.tip -> rod) { rigid; }
@@ -47,7 +50,8 @@ mod slide {
             joint way: prismatic x (ground.O -> slider) { rigid; }
             drive motor on main torque = 5;
             observe {
-                crank.direction; rod.direction; slider.position; main.force; pin.force; wrist.force; way.force; way.moment; main.moment
+                crank.direction; rod.direction; slider.position; main.force; pin.force; wrist.force; way.force;
+                way.moment; main.moment
             }
             scenes only;
             scene BySpeeds { expect planar; expect independent speeds; }
@@ -68,7 +72,8 @@ fn run<Me: Mechanism>(model: &Me) -> Trajectory {
         .expect("a run")
 }
 
-/// The columns are the same to 1e-9 of the largest number of their kind; that of the reactions is what occurs in any of them.
+/// The columns are the same to 1e-9 of the largest number of their kind; that of the reactions is what occurs in any of
+/// them.
 fn are_same(by_speeds: &Trajectory, with_all: &Trajectory) {
     let is_reaction = |name: &str| name.contains("force") || name.contains("moment");
     let size = |reactions: bool| {

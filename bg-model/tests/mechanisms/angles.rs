@@ -17,7 +17,8 @@ bond_graph! {
         body wheel { mass 1; inertia [0.1, 0.1, 0.1]; start turned rotation_z(tilt); start spin [0, 0, 10]; }
         joint pin: revolute z (ground.pivot -> wheel) { stiffness 1e4; tilt stiffness 1e3; }
         drive spring on pin torque = -stiffness * pin.angle;
-        observe { angle: rad = pin.angle; body: rad = wheel.angle; direction: rad = pin.direction; torque: N*m = spring.effort }
+        observe { angle: rad = pin.angle; body: rad = wheel.angle; direction: rad = pin.direction;
+            torque: N*m = spring.effort }
         scene Flat { expect planar; tune { stiffness, tilt } }
         scene Turned { expect planar; angles; expect states = 2; tune { stiffness, tilt } }
         scene Rigid { rigid joints; expect planar; tune { stiffness, tilt } }
@@ -41,7 +42,8 @@ bond_graph! {
         joint pin: revolute z (ground.pivot -> wheel) { rigid; }
         C bar = stiffness at pin.angle; pin.spin -> bar;
         1 slide: translation; I load = 2 start 1; C spring = k at slide.displacement; slide -> load; slide -> spring;
-        observe { angle: rad = pin.angle; x: m = slide.displacement; force: N = spring.effort; torque: N*m = bar.effort }
+        observe { angle: rad = pin.angle; x: m = slide.displacement; force: N = spring.effort;
+            torque: N*m = bar.effort }
     }
     /// A nut on a screw: a joint that turns and slides, with a law of both.
     graph Screw {
@@ -57,7 +59,8 @@ bond_graph! {
     graph Gimbal {
         ground { point pivot = [0, 0, 0]; }
         body ring { mass 1; inertia [0.1, 0.2, 0.3]; start turned rotation_z(3); start spin [0, 0, 9]; }
-        body rotor { mass 1; inertia [0.1, 0.1, 0.1]; start turned rotation_z(3); start spin [-1.1289600644789, -7.9199399728036, 9]; }
+        body rotor { mass 1; inertia [0.1, 0.1, 0.1]; start turned rotation_z(3);
+            start spin [-1.1289600644789, -7.9199399728036, 9]; }
         joint outer: revolute z (ground.pivot -> ring) { rigid; }
         joint inner: revolute y (ring -> rotor) { rigid; }
         drive twist on inner torque = -0.05 * inner.angle;
@@ -68,7 +71,8 @@ bond_graph! {
     graph ByHand {
         body rod { mass 1; inertia [0.1, 0.1, 0.1]; start spin [4, 0, 0]; }
         let roll: rad = unwrapped(rod.y_axis.z, rod.y_axis.y, rod.angular_velocity.x);
-        observe { roll; twice: rad = 2 * roll; alone: rad = unwrapped(-rod.z_axis.y, rod.z_axis.z, 0.8 * rod.angular_velocity.x) }
+        observe { roll; twice: rad = 2 * roll;
+            alone: rad = unwrapped(-rod.z_axis.y, rod.z_axis.z, 0.8 * rod.angular_velocity.x) }
     }
 }
 

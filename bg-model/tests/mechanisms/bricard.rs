@@ -1,4 +1,5 @@
-//! Bricard's mechanism (IFToMM benchmark A04): five rods, six hinges, one degree of freedom that counting them does not give.
+//! Bricard's mechanism (IFToMM benchmark A04): five rods, six hinges, one degree of freedom that counting them does not
+//! give.
 
 use std::sync::LazyLock;
 
@@ -14,15 +15,20 @@ const TEXT: &str = "
 graph Bricard {
     gravity [0, -9.81, 0];
     ground { point A = [0, 0, 0]; point F = [0, 0, 1]; }
-    body one { mass 1; inertia [0.0016666666666666668, 0.08416666666666667, 0.08416666666666667]; point A = [-0.5, 0, 0]; point B = [0.5, 0, 0];
+    body one { mass 1; inertia [0.0016666666666666668, 0.08416666666666667, 0.08416666666666667]; \
+    point A = [-0.5, 0, 0]; point B = [0.5, 0, 0];
         start A at [0, 0, 0]; }
-    body two { mass 1; inertia [0.08416666666666667, 0.0016666666666666668, 0.08416666666666667]; point B = [0, 0.5, 0]; point C = [0, -0.5, 0];
+    body two { mass 1; inertia [0.08416666666666667, 0.0016666666666666668, 0.08416666666666667]; \
+    point B = [0, 0.5, 0]; point C = [0, -0.5, 0];
         start B at [1, 0, 0]; }
-    body three { mass 1; inertia [0.08416666666666667, 0.08416666666666667, 0.0016666666666666668]; point C = [0, 0, -0.5]; point D = [0, 0, 0.5];
+    body three { mass 1; inertia [0.08416666666666667, 0.08416666666666667, 0.0016666666666666668]; \
+    point C = [0, 0, -0.5]; point D = [0, 0, 0.5];
         start C at [1, -1, 0]; }
-    body four { mass 1; inertia [0.0016666666666666668, 0.08416666666666667, 0.08416666666666667]; point D = [0.5, 0, 0]; point E = [-0.5, 0, 0];
+    body four { mass 1; inertia [0.0016666666666666668, 0.08416666666666667, 0.08416666666666667]; \
+    point D = [0.5, 0, 0]; point E = [-0.5, 0, 0];
         start D at [1, -1, 1]; }
-    body five { mass 1; inertia [0.08416666666666667, 0.0016666666666666668, 0.08416666666666667]; point E = [0, -0.5, 0]; point F = [0, 0.5, 0];
+    body five { mass 1; inertia [0.08416666666666667, 0.0016666666666666668, 0.08416666666666667]; \
+    point E = [0, -0.5, 0]; point F = [0, 0.5, 0];
         start E at [0, -1, 1]; }
     joint a: revolute y (ground.A -> one.A) { rigid; }
     joint b: revolute z (one.B -> two.B) { rigid; }
@@ -32,7 +38,8 @@ graph Bricard {
     joint f: revolute x (ground.F -> five.F) { rigid; }
     observe {
         third: m = three.D.position;
-        a: m = one.position.y; b: m = two.position.y; c: m = three.position.y; d: m = four.position.y; e: m = five.position.y;
+        a: m = one.position.y; b: m = two.position.y; c: m = three.position.y; d: m = four.position.y; \
+        e: m = five.position.y;
         gap: m = f.gap;
     }
 }

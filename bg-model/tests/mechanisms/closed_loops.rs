@@ -1,5 +1,5 @@
-//! Loops closed in closed form beside the same with all reactions: motion, reactions, derivatives, runs side by side, what pictures show, and
-//! what is said where a loop cannot be closed so.
+//! Loops closed in closed form beside the same with all reactions: motion, reactions, derivatives, runs side by side,
+//! what pictures show, and what is said where a loop cannot be closed so.
 
 use bg_model::bond_graph;
 use bg_model::failure::Cause;
@@ -19,13 +19,16 @@ mod four_bar {
             param torque: N*m = 3; param side: 1 = 1; param weight: kg = 2, above 0; param reach: m = 0.5, above 0;
             gravity [0, -9.81, 0];
             ground { point O = [0, 0, 0]; point Q = [1, 0.1, 0]; }
-            body crank { mass 1; inertia [0.02, 0.02, 0.02]; point O = [-0.1, 0, 0]; point A = [0.2, 0, 0]; start O at [0, 0, 0]; }
+            body crank { mass 1; inertia [0.02, 0.02, 0.02]; point O = [-0.1, 0, 0]; point A = [0.2, 0, 0];
+                start O at [0, 0, 0]; }
             body coupler {
-                mass weight; inertia [0.1, 0.1, 0.1]; point A = [-0.5, 0.1, 0]; point B = [0.5, 0.1, 0]; start A at [0.3, 0, 0];
+                mass weight; inertia [0.1, 0.1, 0.1]; point A = [-0.5, 0.1, 0]; point B = [0.5, 0.1, 0];
+                start A at [0.3, 0, 0];
                 start turned rotation_z(guess(0.9 * side));
             }
             body rocker {
-                mass 1.5; inertia [0.1, 0.1, 0.2]; point Q = [-0.3, 0, 0]; point B = [reach, 0, 0]; start Q at [1, 0.1, 0];
+                mass 1.5; inertia [0.1, 0.1, 0.2]; point Q = [-0.3, 0, 0]; point B = [reach, 0, 0];
+                start Q at [1, 0.1, 0];
                 start turned rotation_z(guess(1.7 * side));
             }
             joint o: revolute z (ground.O -> crank.O) { rigid; }
@@ -34,7 +37,8 @@ mod four_bar {
             joint b: revolute z (coupler.B -> rocker.B) { rigid; }
             drive motor on o torque = torque - 0.02 * o.speed;
             observe {
-                crank.direction; coupler.direction; rocker.direction; rocker.position; o.force; a.force; b.force; q.force;
+                crank.direction; coupler.direction; rocker.direction; rocker.position; o.force; a.force; b.force;
+                q.force;
                 energy: J = stored_energy - integral(supplied_power - dissipated_power);
             }
             scenes only;
@@ -54,7 +58,8 @@ mod slides {
             param rod: m = 0.3, above 0; param torque: N*m = 1;
             ground { point O = [0, 0, 0]; }
             body crank { mass 2; inertia [0.02, 0.02, 0.02]; point pin = [0.1, 0, 0]; start at [0, 0, 0]; }
-            body link { mass 1; inertia [0.01, 0.01, 0.01]; point low = [-rod / 2, 0, 0]; point high = [rod / 2, 0, 0]; start low at [0.1, 0, 0]; }
+            body link { mass 1; inertia [0.01, 0.01, 0.01]; point low = [-rod / 2, 0, 0]; point high = [rod / 2, 0, 0];
+                start low at [0.1, 0, 0]; }
             body piston { mass 0.5; inertia [0.01, 0.01, 0.01]; start at [0.1 + rod, 0, 0]; }
             joint main: revolute z (ground.O -> crank) { rigid; }
             joint big_end: revolute z (crank.pin -> link.low) { rigid; }
@@ -69,14 +74,17 @@ mod slides {
             gravity [0, -9.81, 0];
             ground { point O = [0, 0, 0]; point Q = [0, -1, 0]; }
             body crank { mass 1; inertia [0.02, 0.02, 0.02]; point A = [0.3, 0, 0]; start at [0, 0, 0]; }
-            body arm { mass 2; inertia [0.3, 0.3, 0.3]; point Q = [-0.5, 0, 0]; start Q at [0, -1, 0]; start turned rotation_z(atan2(1, 0.3)); }
-            body block { mass 0.5; inertia [0.01, 0.01, 0.01]; start at [0.3, 0, 0]; start turned rotation_z(atan2(1, 0.3)); }
+            body arm { mass 2; inertia [0.3, 0.3, 0.3]; point Q = [-0.5, 0, 0]; start Q at [0, -1, 0];
+                start turned rotation_z(atan2(1, 0.3)); }
+            body block { mass 0.5; inertia [0.01, 0.01, 0.01]; start at [0.3, 0, 0];
+                start turned rotation_z(atan2(1, 0.3)); }
             joint o: revolute z (ground.O -> crank) { rigid; }
             joint q: revolute z (ground.Q -> arm.Q) { rigid; }
             joint a: revolute z (crank.A -> block) { rigid; }
             joint slot: prismatic x (arm -> block) { rigid; }
             drive motor on o torque = 5;
-            observe { crank.direction; arm.direction; block.position; o.force; q.force; a.force; slot.force; slot.moment }
+            observe { crank.direction; arm.direction; block.position; o.force; q.force; a.force; slot.force;
+                slot.moment }
             scenes only;
             scene Slotted { dependent arm; expect planar; expect states = 3; }
             scene SlottedWithAll { all reactions; expect planar; }
@@ -94,7 +102,8 @@ mod bumper {
             gravity [0, -9.81, 0];
             ground { point O = [0, 0, 0]; point wall = [0.2, 0.3, 0]; }
             body crank { mass 2; inertia [0.02, 0.02, 0.02]; point pin = [0.1, 0, 0]; start at [0, 0, 0]; }
-            body link { mass 1; inertia [0.01, 0.01, 0.01]; point low = [-half, 0, 0]; point high = [half, 0, 0]; start low at [0.1, 0, 0]; }
+            body link { mass 1; inertia [0.01, 0.01, 0.01]; point low = [-half, 0, 0]; point high = [half, 0, 0];
+                start low at [0.1, 0, 0]; }
             body block { mass 0.5; inertia [0.01, 0.01, 0.01]; start at [0.1 + 2 * half, 0, 0]; }
             joint main: revolute z (ground.O -> crank) { rigid; }
             joint big_end: revolute z (crank.pin -> link.low) { rigid; }
@@ -124,7 +133,8 @@ fn run<Me: Mechanism>(model: &Me, method: Integrator, rtol: f64) -> Trajectory {
     Simulation::new(model).method(method).rtol(rtol).atol(1e-3 * rtol).every(0.05).until(2.0).run().expect("a run")
 }
 
-/// The columns differ by a part of the largest number of their kind at most; that of reactions is what occurs in any of them.
+/// The columns differ by a part of the largest number of their kind at most; that of reactions is what occurs in any of
+/// them.
 fn are_same(a: &Trajectory, b: &Trajectory, part: f64) {
     let is_reaction = |name: &str| name.contains("force") || name.contains("moment");
     let size = |of_reactions: bool| {

@@ -56,7 +56,8 @@ fn a_saturated_one_does_not_wind_up() {
 
 #[test]
 fn a_start_has_the_states_unit() {
-    let text = "graph Clock { param first: deg = 30; 1 shaft: rotation; I wheel = 1 start 2; C spring = 1 N*m/rad; shaft -> wheel; shaft -> spring;
+    let text = "graph Clock { param first: deg = 30; 1 shaft: rotation; I wheel = 1 start 2; C spring = 1 N*m/rad; \
+        shaft -> wheel; shaft -> spring;
         state angle: deg = shaft.flow start 90; state other: rad = shaft.flow start first;
         observe { angle: deg = angle; other: deg = other; turned: deg = spring.q } }";
     let found = after(text, "Clock", 1.0);
@@ -68,8 +69,10 @@ fn a_state_that_reads_a_reaction_is_the_same_in_every_form() {
     let text = "graph Arm {
         ground { point O = [0, 0, 0]; }
         gravity [0, -9.81, 0];
-        body upper { mass 2; inertia [0.01, 0.08, 0.08]; point a = [-0.3, 0, 0]; point b = [0.3, 0, 0]; start a at [0, 0, 0]; }
-        body lower { mass 1; inertia [0.01, 0.04, 0.04]; point a = [-0.25, 0, 0]; start a at [0.6, 0, 0]; start spin [0, 0, 3]; start velocity [0, 0.75, 0]; }
+        body upper { mass 2; inertia [0.01, 0.08, 0.08]; point a = [-0.3, 0, 0]; point b = [0.3, 0, 0]; \
+        start a at [0, 0, 0]; }
+        body lower { mass 1; inertia [0.01, 0.04, 0.04]; point a = [-0.25, 0, 0]; start a at [0.6, 0, 0]; \
+        start spin [0, 0, 3]; start velocity [0, 0.75, 0]; }
         joint shoulder: revolute z (ground.O -> upper.a) { rigid; }
         joint elbow: revolute z (upper.b -> lower.a) { rigid; }
         state felt: N*s = elbow.force.x - 2 / (1 s) * felt;
@@ -91,7 +94,8 @@ fn the_smaller_and_the_larger_of_two_are_branches() {
     let text = "graph Pushed {
         1 one: translation; I m = 1; MSe f = min(2 N/s * t, 3 N); f -> one -> m;
         1 two: translation; I n = 1; MSe g = max(2 N/s * (t - 1 s), 0); g -> two -> n;
-        observe { one: m/s = one.flow; two: m/s = two.flow; least: 1 = min(min(3, t / 1 s), 2.5); most: 1 = max(t / 1 s, 2.5) }
+        observe { one: m/s = one.flow; two: m/s = two.flow; least: 1 = min(min(3, t / 1 s), 2.5); \
+        most: 1 = max(t / 1 s, 2.5) }
     }";
     for (t, least, most) in [(0.9_f64, 0.9, 2.5), (1.4, 1.4, 2.5), (2.0, 2.0, 2.5), (2.7, 2.5, 2.7)] {
         let found = after(text, "Pushed", t);

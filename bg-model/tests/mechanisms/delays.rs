@@ -53,7 +53,8 @@ fn the_method_of_steps() {
     }
 }
 
-/// What is given of a signal before the start, a jump that a delay hands on, a delay of a delay, two delays of one signal.
+/// What is given of a signal before the start, a jump that a delay hands on, a delay of a delay, two delays of one
+/// signal.
 #[test]
 fn functions_of_time_are_shifted() {
     let text = "graph Late {

@@ -1,9 +1,10 @@
-//! Hand-written equations of motion of mechanisms, without anything of the compiler: Kane's equations for poses that are
-//! functions of independent coordinates.
+//! Hand-written equations of motion of mechanisms, without anything of the compiler: Kane's equations for poses that
+//! are functions of independent coordinates.
 //!
-//! In: masses, tensors, poses by coordinates. Out: a system whose states are the coordinates and their rates. Method: the
-//! partial velocities and what accelerations have beside the coordinates' second derivatives are derivatives of the poses,
-//! by jets of the second order (T. R. Kane, D. A. Levinson, Dynamics: Theory and Applications, 1985, sections 6.1, 6.3).
+//! In: masses, tensors, poses by coordinates. Out: a system whose states are the coordinates and their rates. Method:
+//! the partial velocities and what accelerations have beside the coordinates' second derivatives are derivatives of the
+//! poses, by jets of the second order (T. R. Kane, D. A. Levinson, Dynamics: Theory and Applications, 1985, sections
+//! 6.1, 6.3).
 
 use std::ops::{Add, Mul, Neg, Sub};
 

@@ -1,5 +1,5 @@
-//! A mechanism whose rigid joints leave no motion is refused at the start, with their names; one that is meant to stand still
-//! is not.
+//! A mechanism whose rigid joints leave no motion is refused at the start, with their names; one that is meant to stand
+//! still is not.
 
 use std::sync::LazyLock;
 
@@ -111,7 +111,8 @@ graph Turned {
     param growth: rad/s^2 = 2;
     gravity [0, -9.81, 0];
     ground { point O = [0, 0, 0]; }
-    part rod: Rod { start rod.left at [0, 0, 0]; start rod velocity [guess(0), guess(0), 0]; start rod spin [0, 0, guess(0)]; }
+    part rod: Rod { start rod.left at [0, 0, 0]; start rod velocity [guess(0), guess(0), 0]; \
+    start rod spin [0, 0, guess(0)]; }
     joint pin: revolute z (ground.O -> rod.rod.left) { rigid; }
     rSe motor = speed + growth * t;
     pin.spin -> motor;
@@ -125,7 +126,8 @@ graph Steady {
     param speed: rad/s = 3;
     gravity [0, -9.81, 0];
     ground { point O = [0, 0, 0]; }
-    part rod: Rod { start rod.left at [0, 0, 0]; start rod velocity [guess(0), guess(0), 0]; start rod spin [0, 0, guess(0)]; }
+    part rod: Rod { start rod.left at [0, 0, 0]; start rod velocity [guess(0), guess(0), 0]; \
+    start rod spin [0, 0, guess(0)]; }
     joint pin: revolute z (ground.O -> rod.rod.left) { rigid; }
     rSe motor = speed;
     pin.spin -> motor;
@@ -154,8 +156,8 @@ fn run(name: &str, end: f64) -> Trajectory {
 fn joints_that_leave_no_motion_are_named() {
     let expected = |joints: &str| {
         format!(
-            "the mechanism cannot move: rigid joints {joints} hold it together in every direction; leave one of them out, make \
-             it compliant, or give it another free axis"
+            "the mechanism cannot move: rigid joints {joints} hold it together in every direction; \
+             leave one of them out, make it compliant, or give it another free axis"
         )
     };
     assert_eq!(refused("Triangle"), expected("`foot`, `tip`, `heel`"));

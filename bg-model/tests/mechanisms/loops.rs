@@ -1,5 +1,5 @@
-//! Algebraic loops that are not linear, while a model runs: by every integrator, in more digits, with events, and without a
-//! solution.
+//! Algebraic loops that are not linear, while a model runs: by every integrator, in more digits, with events, and
+//! without a solution.
 
 use bg_model::bond_graph;
 use bg_model::integrator::Integrator;
@@ -14,7 +14,8 @@ bond_graph! {
         param amplitude: V = 10;
         param thermal: V = 0.5, above 0;
         MSe source = amplitude * cos(3 * t);
-        1 first: electrical; R R1 = 5; 0 left: electrical; R D1(effort u) = 0.01 * (exp(u / thermal) - 1) * scale; param scale: A = 1;
+        1 first: electrical; R R1 = 5; 0 left: electrical; R D1(effort u) = 0.01 * (exp(u / thermal) - 1) * scale;
+        param scale: A = 1;
         1 second: electrical; R R2 = 3; 0 right: electrical; R D2(effort u) = 0.02 * (exp(u / thermal) - 1) * scale;
         1 third: electrical; R R3 = 1; I coil = 0.5;
         source -> first -> R1; first -> left -> D1; left -> second -> R2; second -> right -> D2;

@@ -154,8 +154,8 @@ fn two_tanks_come_to_rest() {
 
 #[test]
 fn a_tank_fills_another_one() {
-    // The states' own rates differ at the start: that of the second tank is zero. With w = V1 - V2, w' = 1 - sqrt w, and
-    // V1 + V2 = t.
+    // The states' own rates differ at the start: that of the second tank is zero. With w = V1 - V2, w' = 1 - sqrt w,
+    // and V1 + V2 = t.
     let model: Tanks = Tanks::new(TanksParameters::default()).expect("in range");
     for tolerance in [1e-4, 1e-6, 1e-9] {
         for method in methods() {

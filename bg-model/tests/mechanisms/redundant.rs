@@ -62,7 +62,8 @@ graph Hung {
     rSe top.x_reaction = 0 at door.upper.position.x + 0.37;
     rSe top.y_reaction = 0 at door.upper.position.y - 0.11;
     top.x -> top.x_reaction; top.y -> top.y_reaction;
-    observe { bottom.force; angle: rad = door.angle; aside: N = top.x_reaction.effort; across: N = top.y_reaction.effort }
+    observe { bottom.force; angle: rad = door.angle; aside: N = top.x_reaction.effort; \
+    across: N = top.y_reaction.effort }
 }
 
 /// Two cranks and a coupler, all links 0.3 m or 0.5 m long.
@@ -126,8 +127,8 @@ fn two_rigid_hinges_of_one_door_share_its_weight() {
     // It rests.
     for y in [outputs(&*model, 0.0, &model.start().unwrap(), &[]), at_the_end(&*model, &finish)] {
         let (weight, arm) = (20.0 * 9.81, 0.4);
-        // Both forces carry the weight; the moment of the weight is taken by forces aside, 1 m above and below the middle, and
-        // by moments, in the least sum of squares of (f, -f, m, m): 2 f + 2 m = weight * arm with f = m.
+        // Both forces carry the weight; the moment of the weight is taken by forces aside, 1 m above and below the
+        // middle, and by moments, in the least sum of squares of (f, -f, m, m): 2 f + 2 m = weight * arm with f = m.
         let aside = weight * arm / 4.0;
         assert!((y[2] - weight / 2.0).abs() < 1e-6 && (y[5] - weight / 2.0).abs() < 1e-6, "{y:?}");
         assert!((y[0].hypot(y[1]) - aside).abs() < 1e-6 && (y[3].hypot(y[4]) - aside).abs() < 1e-6, "{y:?}");
@@ -180,7 +181,8 @@ fn through_flat_poses(method: &mut dyn Method, rtol: f64) {
     assert!(error < 100.0 * rtol, "{name} {rtol:e}: {y:?}");
 }
 
-/// Newton's iteration needs derivatives of the rates, which grow without bound: it stops there or passes, it does not err.
+/// Newton's iteration needs derivatives of the rates, which grow without bound: it stops there or passes, it does not
+/// err.
 fn creeps(cause: &Cause) {
     let Cause::Singular { redundancy, .. } = cause else { panic!("{cause}") };
     assert_eq!((redundancy.joint, redundancy.others.len()), ("pin_b", 3), "{cause}");

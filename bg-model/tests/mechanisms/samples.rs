@@ -150,14 +150,15 @@ fn clocks_of_one_instant_compute_together() {
     }
 }
 
-/// Flows are those just before the instant, with what was held until then; a name of an expression is that expression, in
-/// a block as elsewhere.
+/// Flows are those just before the instant, with what was held until then; a name of an expression is that expression,
+/// in a block as elsewhere.
 #[test]
 fn signals_are_those_before_the_instant_and_names_are_what_they_name() {
     let text = "graph Sampled {
         let doubled = 2 * count;
         let force: N = 1 N * doubled;
-        every 1 s { sample seen: 1 = doubled; sample count: 1 = count.last + 1 start 5; sample effort: N = push.effort; }
+        every 1 s { sample seen: 1 = doubled; sample count: 1 = count.last + 1 start 5; \
+        sample effort: N = push.effort; }
         1 j: translation; I m = 1; MSe push = force; push -> j -> m;
         observe { count: 1 = count; seen: 1 = seen; doubled; effort: N = effort }
     }";

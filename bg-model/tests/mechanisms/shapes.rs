@@ -114,12 +114,14 @@ fn disc(table: &str, contact: &str) -> String {
             gravity [0, -9.81, 0];
             ground {{ point O = [0, 0, 0]; point foot = [0, -0.97, 0]; }}
             body disc {{ mass 1; inertia [1, 1, 1e-3]; point middle = [0.002, 0, 0]; start spin [0, 0, 100]; }}
-            body follower {{ mass 0.3; inertia [1e-4, 1e-4, 1e-4]; start at [0, HEIGHT, 0]; start velocity [0, 0.2, 0]; }}
+            body follower {{ mass 0.3; inertia [1e-4, 1e-4, 1e-4]; start at [0, HEIGHT, 0]; \
+            start velocity [0, 0.2, 0]; }}
             joint shaft: revolute z (ground.O -> disc) {{ rigid; }}
             joint guide: prismatic y (ground.O -> follower) {{ rigid; }}
             spring back (ground.foot -> follower) {{ stiffness 40; length 1; }}
             contact tip ({contact}) {{ stiffness 1e6; dissipation 0.2; }}
-            observe {{ angle: rad = shaft.angle; lift: m = follower.position.y; force: N = tip.pressed; gap: m = tip.gap;
+            observe {{ angle: rad = shaft.angle; lift: m = follower.position.y; force: N = tip.pressed; \
+            gap: m = tip.gap;
                 total: J = stored_energy + integral(dissipated_power) - integral(supplied_power) }}
         }}"
     )
@@ -200,7 +202,8 @@ fn what_hits_parts_with_its_restitution() {
                 body ball {{ mass 0.5; inertia [1e-3, 1e-3, 1e-3]; start at [0, 0.3, 0]; start velocity [0, -1.2, 0]; }}
                 contact hit ({shapes}) {{ stiffness 1e6; restitution e; {law} }}
                 observe {{ apart: m/s = ball.velocity.y - wall.velocity.y; gap: m = hit.gap;
-                    momentum: N*s = ball.momentum.y + wall.momentum.y; energy: J = stored_energy; lost: J = integral(hit.damper.power) }}
+                    momentum: N*s = ball.momentum.y + wall.momentum.y; energy: J = stored_energy; \
+                    lost: J = integral(hit.damper.power) }}
             }}"
         )
     };
@@ -289,7 +292,8 @@ fn slider(joint: &str) -> String {
             joint big_end: revolute z (crank.A -> rod.A) {{ rigid; }}
             joint guide: prismatic x (ground.O -> slider) {{ rigid; }}
             {joint}
-            observe {{ crank: rad = main.angle; rod: rad = rod.angle; place: m = guide.travel; speed: m/s = slider.velocity.x }}
+            observe {{ crank: rad = main.angle; rod: rad = rod.angle; place: m = guide.travel; \
+            speed: m/s = slider.velocity.x }}
         }}"
     )
 }
@@ -337,7 +341,8 @@ fn what_slides_on_an_incline_rubs_and_sticks() {
                 body disc {{ mass 2; inertia [1, 1, 0.01]; start at [0.1 * sin(0.4), 0.1 * cos(0.4), 0]; }}
                 contact floor (ground.foot line x -> disc circle 0.1) {{ stiffness 1e5; damping 2 * sqrt(1e5 * 2); }}
                 friction rub on floor {{ coulomb {friction:?}; }}
-                observe {{ way: m = dot([cos(0.4), -sin(0.4), 0], disc.position); spin: rad/s = disc.angular_velocity.z; pressed: N = floor.pressed }}
+                observe {{ way: m = dot([cos(0.4), -sin(0.4), 0], disc.position); \
+                spin: rad/s = disc.angular_velocity.z; pressed: N = floor.pressed }}
             }}"
         )
     };
@@ -345,8 +350,8 @@ fn what_slides_on_an_incline_rubs_and_sticks() {
     let settled = 2.0 * g * 0.4_f64.cos();
     let [rolling, slipping] = [0.3, 0.05].map(|friction| after(&graph(friction), &[t]).remove(0));
     assert!((rolling[2] - settled).abs() < 1e-6 && (slipping[2] - settled).abs() < 1e-6, "{rolling:?}");
-    // What presses swings in initially: rolling does not depend on it, slipping by the impulse, which is that of the weight
-    // but for the speed of sinking in, which has gone.
+    // What presses swings in initially: rolling does not depend on it, slipping by the impulse, which is that of the
+    // weight but for the speed of sinking in, which has gone.
     let acceleration = g * 0.4_f64.sin() / 1.5;
     assert!((rolling[1] + acceleration * t / 0.1).abs() < 1e-3, "{rolling:?}");
     let speed = g * (0.4_f64.sin() - 0.05 * 0.4_f64.cos()) * t;
@@ -371,7 +376,8 @@ fn a_memory_keeps_what_it_followed() {
 
 #[test]
 fn scenes_in_the_plane_touch_as_the_graph_does() {
-    let scene = "scene Flat { observe { angle: rad = shaft.angle; lift: m = follower.position.y; force: N = tip.pressed } expect planar; } }";
+    let scene = "scene Flat { observe { angle: rad = shaft.angle; lift: m = follower.position.y; \
+        force: N = tip.pressed } expect planar; } }";
     for (law, shapes) in [
         ("dissipation 0.2;", "disc.middle circle 0.03 -> follower circle 0.01"),
         ("restitution 0.6;", "disc.middle circle 0.03 -> follower circle 0.01"),
@@ -398,7 +404,8 @@ fn scenes_in_the_plane_touch_as_the_graph_does() {
 fn a_memory_that_leads_out_of_its_branch_is_a_hysteresis() {
     let text = "graph Tank {
         memory running: 1 = if tank.effort < 1.5 bar { 1 } else { 0 } while abs(tank.effort - 1.5 bar) > 0.3 bar;
-        MSf pump = running * 1 l/s; 0 tank: hydraulic; C water = 1e-7 m^3/Pa; R drain = 5e8 Pa*s/m^3; pump -> tank -> water; tank -> drain;
+        MSf pump = running * 1 l/s; 0 tank: hydraulic; C water = 1e-7 m^3/Pa; R drain = 5e8 Pa*s/m^3; \
+        pump -> tank -> water; tank -> drain;
         observe { pressure: bar = tank.effort; running }
     }";
     // Time constant 50 s; up towards 5 bar, down towards 0.
@@ -454,8 +461,8 @@ fn a_ball_that_slides_rolls_with_five_sevenths_of_its_speed() {
         let falls = |[x, z]: [f64; 2]| x.hypot(z).hypot(creep) - creep * (creep / x.hypot(z)).asinh();
         let apart = falls(first) - falls(later) - 3.5 * 0.3 * 9.81 * 0.2;
         assert!(apart.abs() < 1e-9, "{apart:e} m/s");
-        // The moment of momentum about the place of contact stays, so it rolls with 5/7 of its speed and 2/7 of what its
-        // surface had.
+        // The moment of momentum about the place of contact stays, so it rolls with 5/7 of its speed and 2/7 of what
+        // its surface had.
         let expected = [5.0 / 7.0 * (vx - 0.4 * 0.1 * wz), 5.0 / 7.0 * (vz + 0.4 * 0.1 * wx)];
         assert!((rolling[3] - expected[0]).abs() < 1e-9 && (rolling[5] - expected[1]).abs() < 1e-9, "{rolling:?}");
         let rolls = [-10.0 * expected[0], 10.0 * expected[1]];
@@ -466,14 +473,16 @@ fn a_ball_that_slides_rolls_with_five_sevenths_of_its_speed() {
     }
 }
 
-/// A ball of 0.1 m and 0.7 kg with a spring of 1e6 N/m by which it sticks, on a plane that falls by `slope` (rad) along x.
+/// A ball of 0.1 m and 0.7 kg with a spring of 1e6 N/m by which it sticks, on a plane that falls by `slope` (rad) along
+/// x.
 fn on_a_slope(inertia: f64, slope: f64, more: &str) -> String {
     let (along, down) = (9.81 * slope.sin(), -9.81 * slope.cos());
     let height = if more.contains("velocity") { 0.2 } else { 0.1 + 0.7 * down / 1e4 };
     format!(
         "graph Ball {{
             gravity [{along:?}, {down:?}, 0]; ground {{ point floor = [0, 0, 0]; }}
-            body ball {{ mass 0.7; inertia [{inertia:?}, {inertia:?}, {inertia:?}]; start at [0, {height:?}, 0]; {more} }}
+            body ball {{ mass 0.7; inertia [{inertia:?}, {inertia:?}, {inertia:?}]; start at [0, {height:?}, 0]; \
+            {more} }}
             contact touch (ground.floor plane y -> ball sphere 0.1) {{ stiffness 1e4; damping 20; }}
             friction rub on touch {{ coulomb 0.3; stiffness 1e6; viscous 500; }}
             observe {{ x: m = ball.position.x; v: m/s = ball.velocity.x; rub: N = rub.effort.x;
@@ -482,7 +491,8 @@ fn on_a_slope(inertia: f64, slope: f64, more: &str) -> String {
     )
 }
 
-/// Below the slope 0.3 it stands and does not creep, above it slides with the friction that is said; a ball that can turn rolls.
+/// Below the slope 0.3 it stands and does not creep, above it slides with the friction that is said; a ball that can
+/// turn rolls.
 #[test]
 fn what_touches_in_space_sticks_by_a_spring() {
     let found = after(&on_a_slope(1e12, 0.2, ""), &[0.1, 0.2]);
@@ -518,8 +528,8 @@ fn a_ball_on_a_ball_in_a_plane_is_a_disc_on_a_disc() {
     }
 }
 
-/// Crank, rod and slider of P. Flores, R. Leine, C. Glocker, Modeling and analysis of planar rigid multibody systems with
-/// translational clearance joints based on the non-smooth dynamics approach, Multibody System Dynamics 23 (2010)
+/// Crank, rod and slider of P. Flores, R. Leine, C. Glocker, Modeling and analysis of planar rigid multibody systems
+/// with translational clearance joints based on the non-smooth dynamics approach, Multibody System Dynamics 23 (2010)
 /// 165-190: dimensions, masses, clearance, restitution and start. Here the slider touches without friction by springs,
 /// where theirs is rigid, and it turns at the start, so that its ends touch one after the other.
 const LINKS: [f64; 2] = [0.153, 0.306];
@@ -615,7 +625,8 @@ fn guided(joint: &str) -> String {
             joint small_end: revolute z (rod.B -> slider) {{ rigid; }}
             joint guide: prismatic x (ground.O -> slider) {{ {joint} }}
             scene Flat {{
-                observe {{ crank: rad = main.angle; rod: rad = rod.angle; slider: rad = slider.angle; travel: m = guide.travel;
+                observe {{ crank: rad = main.angle; rod: rad = rod.angle; slider: rad = slider.angle; \
+                travel: m = guide.travel;
                     pressed: N = guide.pressed; force: N = guide.force.y;
                     total: J = stored_energy + integral(dissipated_power) - integral(supplied_power) }}
                 expect planar;
@@ -667,7 +678,8 @@ fn a_slider_without_a_length_is_pushed_back_at_its_end_and_stays_upright() {
             "graph Falls {{
                 gravity [0, -9.81, 0];
                 ground {{ point O = [0, 0, 0]; }}
-                body slider {{ mass 0.5; inertia [1e-3, 1e-3, 1e-3]; start at [0.3, 0, 0]; start velocity [0.2, 0, 0]; }}
+                body slider {{ mass 0.5; inertia [1e-3, 1e-3, 1e-3]; start at [0.3, 0, 0]; start velocity [0.2, 0, 0]; \
+                }}
                 joint guide: prismatic x (ground.O -> slider) {{ {joint} tilt stiffness 1e3; tilt damping 1; }}
                 {more}
                 observe {{ travel: m = guide.travel; height: m = slider.position.y; pressed: N = guide.pressed }}

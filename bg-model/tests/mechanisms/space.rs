@@ -1,5 +1,5 @@
-//! Mechanisms in space by the coordinates of their joints, beside the same with all reactions: stops, dry friction, loops,
-//! a base that floats.
+//! Mechanisms in space by the coordinates of their joints, beside the same with all reactions: stops, dry friction,
+//! loops, a base that floats.
 
 use std::rc::Rc;
 
@@ -10,8 +10,8 @@ use bg_model::simulation::Finish;
 use super::hand::run;
 use super::text::{graphs, model, outputs};
 
-/// Panics unless `scene All { all reactions; }` and `scene Few {}`, which is to have so many states, end alike; gives the
-/// outputs, and how the second run ended.
+/// Panics unless `scene All { all reactions; }` and `scene Few {}`, which is to have so many states, end alike; gives
+/// the outputs, and how the second run ended.
 fn end_alike(text: &str, states: usize, t_end: f64, bound: f64) -> (Vec<f64>, Finish) {
     let graphs: Vec<Graph> = graphs(text);
     let of = |name: &str| -> (Rc<Interpreted>, Finish, Vec<f64>) {
@@ -37,7 +37,8 @@ fn an_arm_hits_its_stop_and_sticks() {
         body a { mass 2; inertia [0.02, 0.03, 0.01]; point top = [0, 0, 0.2]; point low = [0, 0.05, -0.2];
             start top at [0, 0, 0]; start turned rotation_y(0.5); }
         joint i: revolute y (ground.O -> a.top) { rigid; }
-        body b { mass 1; inertia [0.01, 0.015, 0.005]; point top = [0.02, 0, 0.2]; start turned rotation_y(0.5) * rotation_x(0.4);
+        body b { mass 1; inertia [0.01, 0.015, 0.005]; point top = [0.02, 0, 0.2]; \
+        start turned rotation_y(0.5) * rotation_x(0.4);
             start top at [-0.4 * sin(0.5), 0.05, -0.4 * cos(0.5)]; }
         joint j: revolute x (a.low -> b.top) { rigid; }
         stop end on i { at least -0.3; at most 0.6; restitution 0.6; }
@@ -101,16 +102,20 @@ fn links_that_lie_beside_each_other_close_a_loop() {
 #[test]
 fn a_satellite_keeps_its_momenta() {
     let text = "graph Satellite {
-        body base { mass 10; inertia [2, 3, 2.5]; point hip = [0.5, 0.1, 0]; start at [0, 0, 0]; start velocity [0.1, 0.2, 0]; start spin [0.3, 0.1, -0.2]; }
+        body base { mass 10; inertia [2, 3, 2.5]; point hip = [0.5, 0.1, 0]; start at [0, 0, 0]; \
+        start velocity [0.1, 0.2, 0]; start spin [0.3, 0.1, -0.2]; }
         body arm { mass 2; inertia [0.1, 0.4, 0.4]; point left = [-0.5, 0, 0]; start left at [0.5, 0.1, 0];
-            start spin [0.3, 0.9, -0.2]; start velocity [0.1, 0.2, 0] + cross([0.3, 0.1, -0.2], [0.5, 0.1, 0]) + cross([0.3, 0.9, -0.2], [0.5, 0, 0]); }
+            start spin [0.3, 0.9, -0.2]; start velocity [0.1, 0.2, 0] + cross([0.3, 0.1, -0.2], [0.5, 0.1, 0]) + \
+            cross([0.3, 0.9, -0.2], [0.5, 0, 0]); }
         joint elbow: revolute y (base.hip -> arm.left) { rigid; }
         body tip { mass 1; inertia [0.01, 0.02, 0.02]; start at [1, 0.1, 0]; start spin [0.3, 0.9, -0.2];
-            start velocity [0.1, 0.2, 0] + cross([0.3, 0.1, -0.2], [0.5, 0.1, 0]) + cross([0.3, 0.9, -0.2], [0.5, 0, 0]); }
+            start velocity [0.1, 0.2, 0] + cross([0.3, 0.1, -0.2], [0.5, 0.1, 0]) + cross([0.3, 0.9, -0.2], [0.5, 0, \
+            0]); }
         joint slide: prismatic x (arm -> tip) { rigid; }
         observe {
             p: kg*m/s = base.p + arm.p + tip.p;
-            l: kg*m^2/s = base.h + arm.h + tip.h + cross(base.position, base.p) + cross(arm.position, arm.p) + cross(tip.position, tip.p);
+            l: kg*m^2/s = base.h + arm.h + tip.h + cross(base.position, base.p) + cross(arm.position, arm.p) + \
+            cross(tip.position, tip.p);
             stored_energy; tip.position
         }
         scenes only; scene All { all reactions; } scene Few {}

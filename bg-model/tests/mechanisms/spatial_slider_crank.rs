@@ -1,4 +1,5 @@
-//! A slider-crank in space, the example `spatial_slider_crank.bond`, beside hand-written equations in the crank's angle.
+//! A slider-crank in space, the example `spatial_slider_crank.bond`, beside hand-written equations in the crank's
+//! angle.
 
 use bg_model::dynamics::Machine;
 

@@ -168,8 +168,8 @@ fn a_velocity_that_does_not_fit_a_rigid_joint_is_an_error_with_joint_and_speed()
     assert!(matches!(error, AssemblyError::Torn { .. }), "{error}");
     assert_eq!(
         error.to_string(),
-        "the start velocities do not fit: joint `pin` is torn apart at -0.5 m/s in y (allowed: 2e-9); correct them, give \
-         `guess(..)` to those that may change, or write `start impulse;`"
+        "the start velocities do not fit: joint `pin` is torn apart at -0.5 m/s in y (allowed: 2e-9); \
+         correct them, give `guess(..)` to those that may change, or write `start impulse;`"
     );
     // The same on a compliant pin is a start with a spring that is being stretched; and what fits, fits.
     let compliant = model(&GRAPHS, "Bar", &[]);
@@ -278,8 +278,8 @@ fn guesses_that_cannot_help_leave_an_error() {
     let compliant = model(&GRAPHS, "Stuck", &[]);
     assert_eq!(
         compliant.start().unwrap_err().to_string(),
-        "the start velocities do not fit: joint `pin` is torn apart at 0.25 m/s in x (allowed: 2e-9); correct them, give \
-         `guess(..)` to those that may change"
+        "the start velocities do not fit: joint `pin` is torn apart at 0.25 m/s in x (allowed: 2e-9); \
+         correct them, give `guess(..)` to those that may change"
     );
     let rigid = model(&GRAPHS, "RigidStuck", &[]);
     assert!(rigid.start().unwrap_err().to_string().ends_with("or write `start impulse;`"));

@@ -1,4 +1,5 @@
-//! A Stewart platform, the example `stewart_platform.bond`, beside hand-written equations in place and angles of its plate.
+//! A Stewart platform, the example `stewart_platform.bond`, beside hand-written equations in place and angles of its
+//! plate.
 
 use std::f64::consts::FRAC_PI_3;
 

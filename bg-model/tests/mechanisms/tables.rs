@@ -117,7 +117,9 @@ fn a_run_that_leaves_a_table_ends_with_its_name() {
 
 #[test]
 fn each_use_of_a_part_has_its_table() {
-    let text = "part Coil { table force: mm -> N = [[-20, -60], [20, 60]]; 1 slide: translation; C coil(q) = force(q); slide -> coil;
+    let text =
+        "part Coil { table force: mm -> N = [[-20, -60], [20, 60]]; 1 slide: translation; C coil(q) = force(q); \
+        slide -> coil;
             port end = slide; }
         graph Pair {
             part left: Coil {} part right: Coil {}
@@ -138,7 +140,8 @@ fn rotor(table: &str, start: &str) -> String {
     format!(
         "graph Rotor {{
             {table}
-            1 shaft: rotation; I wheel = 0.2 start 0.2 * {start}; C magnet(q) = torque(q) start 0.3; shaft -> wheel; shaft -> magnet;
+            1 shaft: rotation; I wheel = 0.2 start 0.2 * {start}; C magnet(q) = torque(q) start 0.3; shaft -> wheel; \
+            shaft -> magnet;
             observe {{ angle: rad = magnet.q; total: J = stored_energy; slope: N*m/rad = torque.derivative(magnet.q) }}
         }}"
     )
@@ -206,8 +209,10 @@ fn derivatives_of_tables_are_those_of_their_polynomials() {
     // A spline through points of a cubic is that cubic.
     let text = "graph Cubic {
         table cubic: mm -> N = [[-2, -8], [-1, -1], [0, 0], [1, 1], [3, 27]], spline;
-        1 slide: translation; I block = 1 start 1e-3; slide -> block; C spring(q) = cubic.derivative(q) * 1 mm start 0.5 mm; slide -> spring;
-        observe { place: mm = spring.q; first: N/mm = cubic.derivative(spring.q); second: N/mm/mm = cubic.second_derivative(spring.q);
+        1 slide: translation; I block = 1 start 1e-3; slide -> block; C spring(q) = cubic.derivative(q) * 1 mm start \
+        0.5 mm; slide -> spring;
+        observe { place: mm = spring.q; first: N/mm = cubic.derivative(spring.q); \
+        second: N/mm/mm = cubic.second_derivative(spring.q);
             energy: N*mm = spring.energy }
     }";
     let cubic = model(&graphs(text), "Cubic", &[]);
@@ -231,7 +236,8 @@ fn a_part_takes_the_derivative_of_its_own_table() {
             MSe push = {law}; state turn: rad = shaft.flow start 0.5; push -> shaft; port end = shaft; }}
         graph Use {{ part left: Coil {{}} 1 shaft: rotation; I wheel = 0.1; left.end -> shaft; shaft -> wheel;
             observe {{ energy: J = wheel.energy; angle: rad = left.turn }} }}
-        graph Plain {{ {table} 1 shaft: rotation; I wheel = 0.1; MSe push = {law}; state turn: rad = shaft.flow start 0.5;
+        graph Plain {{ {table} 1 shaft: rotation; I wheel = 0.1; MSe push = {law}; \
+        state turn: rad = shaft.flow start 0.5;
             push -> shaft -> wheel;
             observe {{ energy: J = wheel.energy; angle: rad = turn; gained: J = 1 N * (lift(turn) - lift(0.5)) }} }}"
     );
@@ -257,7 +263,8 @@ fn a_map_of_speed_and_voltage_drives_as_its_formula() {
             "graph Motor {{
                 {declared}
                 let volt: V = 12 V + 6 V * sin(3 * t / (1 s));
-                1 shaft: rotation; I rotor = 2e-3; MSe motor = {law}; R fan = 1e-3; motor -> shaft -> rotor; shaft -> fan;
+                1 shaft: rotation; I rotor = 2e-3; MSe motor = {law}; R fan = 1e-3; motor -> shaft -> rotor; \
+                shaft -> fan;
                 observe {{ speed: rpm = shaft.flow; total: J = stored_energy }}
             }}"
         )

@@ -7,7 +7,8 @@ use super::text::{graphs, model, outputs};
 
 const DOCUMENT: &str = include_str!("../../../docs/tasks.md");
 
-/// What a text says of a run: `// After 2 s: speed 1448 rpm, torque 7.505 N*m.`, `// With ratio = 4, after 2 s: speed 90 rpm.`
+/// What a text says of a run: `// After 2 s: speed 1448 rpm, torque 7.505 N*m.`, `// With ratio = 4, after 2 s: speed
+/// 90 rpm.`
 struct Said<'t> {
     /// Parameters with values, in their units.
     parameters: Vec<(&'t str, f64)>,

@@ -53,8 +53,8 @@ fn from_arc(radius: f64, from: f64, to: f64, place: Plane) -> Plane {
 const DISC: f64 = 0.02;
 const TILT: f64 = 0.4;
 
-/// Where the disc is nearest to a shape, in its axes: how far from it, and what is 0 where the nearest place goes from a
-/// wall to its end, so that no step goes over it.
+/// Where the disc is nearest to a shape, in its axes: how far from it, and what is 0 where the nearest place goes from
+/// a wall to its end, so that no step goes over it.
 type Near = fn(Plane) -> (Plane, [f64; 2]);
 
 /// The disc's places and velocities; the shape is around it where it is at most `far` away, or beside it.
@@ -107,9 +107,11 @@ fn disc(shape: &str, start: [f64; 4], is_swapped: bool) -> String {
         "graph Disc {{
             gravity [0, -9.81, 0];
             ground {{ point wall = [0.1, 0, 0] turned rotation_z({TILT:?}); }}
-            body disc {{ mass 0.5; inertia [1e-4, 1e-4, 1e-4]; start at [{x:?}, {y:?}, 0]; start velocity [{u:?}, {v:?}, 0]; }}
+            body disc {{ mass 0.5; inertia [1e-4, 1e-4, 1e-4]; start at [{x:?}, {y:?}, 0]; \
+            start velocity [{u:?}, {v:?}, 0]; }}
             contact hit ({ends}) {{ stiffness 1e5; dissipation 0.1; }}
-            observe {{ x: m = disc.position.x; y: m = disc.position.y; u: m/s = disc.velocity.x; v: m/s = disc.velocity.y;
+            observe {{ x: m = disc.position.x; y: m = disc.position.y; u: m/s = disc.velocity.x; \
+            v: m/s = disc.velocity.y;
                 total: J = stored_energy + integral(dissipated_power) - integral(supplied_power) }}
         }}"
     )
@@ -296,8 +298,11 @@ fn geneva() -> String {
             points += &format!("point c{side}{k} = [{x:?}, {y:?}, 0];");
             contacts += &format!(
                 "contact w{side}{k} (wheel.{side}{k} segment x {:?} -> driver.pin circle {PIN:?}) {{ LAW }}
-                 contact d{side}{k} (driver arc {:?} from {OPENING:?} to {:?} -> wheel.c{side}{k} circle {CORNER:?}) {{ LAW }}",
-                OFF - SLOT, drum(), TAU - OPENING
+                 contact d{side}{k} (driver arc {:?} from {OPENING:?} to {:?} -> wheel.c{side}{k} circle {CORNER:?}) \
+                 {{ LAW }}",
+                OFF - SLOT,
+                drum(),
+                TAU - OPENING
             );
             gaps.push(format!("w{side}{k}: m = w{side}{k}.gap; d{side}{k}: m = d{side}{k}.gap;"));
         }
@@ -314,7 +319,8 @@ fn geneva() -> String {
             R drag = {DRAG:?}; output.spin -> drag;
             {}
             observe {{ driver: rad = input.angle; wheel: rad = output.angle; {} }}
-            scene Flat {{ observe {{ driver: rad = input.angle; wheel: rad = output.angle; speed: rad/s = output.speed; {} }} expect planar; }}
+            scene Flat {{ observe {{ driver: rad = input.angle; wheel: rad = output.angle; \
+            speed: rad/s = output.speed; {} }} expect planar; }}
         }}",
         contacts.replace("LAW", &format!("stiffness 1e6; dissipation {DISSIPATION:?};")),
         gaps.join(""),
@@ -427,7 +433,8 @@ fn what_rests_on_a_rigid_shape_slides_along_it() {
     // From a wall it falls off its end, with the speed of its slide.
     let text = "graph Slide {
         gravity [0, -9.81, 0]; ground { point wall = [0, 0, 0] turned rotation_z(-0.3); }
-        body disc { mass 0.4; inertia [1e-3, 1e-3, 1e-3]; start at [0.05 * sin(0.3) + 0.1 * cos(0.3), 0.05 * cos(0.3) - 0.1 * sin(0.3), 0]; }
+        body disc { mass 0.4; inertia [1e-3, 1e-3, 1e-3]; start at [0.05 * sin(0.3) + 0.1 * cos(0.3), 0.05 * cos(0.3) \
+        - 0.1 * sin(0.3), 0]; }
         contact wall (ground.wall segment x 0.5 -> disc circle 0.05) { rigid; restitution 0; }
         observe { way: m = dot([cos(0.3), -sin(0.3), 0], disc.position); pressed: N = wall.pressed }
     }";
@@ -472,7 +479,8 @@ const MISTAKES: [(&str, &str); 35] = [
     ),
     (
         "play: damping and restitution",
-        "joint j: prismatic x (ground -> ball) { stiffness 1; damping 1; restitution 0.5; tilt stiffness 1; clearance 0.1 mm; }",
+        "joint j: prismatic x (ground -> ball) { stiffness 1; damping 1; restitution 0.5; tilt stiffness 1; \
+        clearance 0.1 mm; }",
     ),
     (
         "friction in space: neither stiffness nor creep",
@@ -480,23 +488,28 @@ const MISTAKES: [(&str, &str); 35] = [
     ),
     (
         "friction in space: stiffness and creep",
-        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 1e6; creep 1e-3; }",
+        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; \
+        stiffness 1e6; creep 1e-3; }",
     ),
     (
         "friction in space: a stiffness of 0",
-        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 0; }",
+        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 0; \
+        }",
     ),
     (
         "friction in space: a stiffness in N",
-        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 1e6 N; }",
+        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; \
+        stiffness 1e6 N; }",
     ),
     (
         "friction in space: static without stribeck",
-        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; static 0.3; stiffness 1e6; }",
+        "contact c (ground plane y -> ball sphere 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; static 0.3; \
+        stiffness 1e6; }",
     ),
     (
         "friction in the plane: a stiffness",
-        "contact c (ground line x -> ball circle 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 1e6; }",
+        "contact c (ground line x -> ball circle 0.1) { stiffness 1e5; } friction f on c { coulomb 0.2; stiffness 1e6; \
+        }",
     ),
     (
         "friction in space: a stop",

@@ -180,8 +180,8 @@ fn a_run_begins_with_what_won_before() {
     }
 }
 
-/// A mass that swings fast and lightly damped under a load that a switch reverses at regular times: the ringing has to be followed,
-/// however short a step is that an event or the end of the run leaves.
+/// A mass that swings fast and lightly damped under a load that a switch reverses at regular times: the ringing has to
+/// be followed, however short a step is that an event or the end of the run leaves.
 fn ringing() -> Flow<Rate<2, 1>, 1> {
     let guards: [fn(f64, &[f64]) -> f64; 1] = [|t, _| (40.0 * t).sin()];
     let rate: Rate<2, 1> = |_, x, negative| {
@@ -209,8 +209,8 @@ fn steps_cut_by_events_or_by_the_end_are_no_measure_of_stiffness() {
 
 #[test]
 fn steps_that_rounding_shortens_are_no_stiffness_and_are_counted() {
-    // A stiff, nearly undamped joint between two masses that are far from the origin: its force is the difference of two states
-    // of 1, so rounding of them is 2e-9 of it.
+    // A stiff, nearly undamped joint between two masses that are far from the origin: its force is the difference of
+    // two states of 1, so rounding of them is 2e-9 of it.
     let rate: Rate<4, 0> = |_, x, _| {
         let force = 1e8 * (x[0] - x[1]);
         [x[2], x[3], -force, force]

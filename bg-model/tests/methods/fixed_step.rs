@@ -1,4 +1,5 @@
-//! Steps of one size at a known greatest cost: the bits of a run with RK4, no allocation, operations counted one by one.
+//! Steps of one size at a known greatest cost: the bits of a run with RK4, no allocation, operations counted one by
+//! one.
 
 use std::cell::Cell;
 use std::cmp::Ordering;
@@ -44,7 +45,8 @@ bond_graph! {
         observe { y: m = floor.place }
     }
     graph Clipper {
-        MSe source = 10 * sin(3 * t); 1 first: electrical; R R1 = 5; 0 left: electrical; 1 third: electrical; R R3 = 1; I coil = 0.5;
+        MSe source = 10 * sin(3 * t); 1 first: electrical; R R1 = 5; 0 left: electrical; 1 third: electrical; R R3 = 1;
+        I coil = 0.5;
         R D1(effort u) = 0.01 * (exp(u / 0.5) - 1);
         source -> first -> R1; first -> left -> D1; left -> third -> R3; third -> coil;
         observe { current: A = third.flow }

@@ -21,8 +21,8 @@ fn the_counts_of_kepler_are_those_of_the_method() {
     assert!(counts.largest_step > 10.0 * counts.smallest_step);
 }
 
-/// A mass that is let go on an unstretched spring of 1e4 rad/s, by whose velocity alone errors count: an odd function of
-/// the time, of which the terms that an estimate of order 5 sees vanish. Both estimates of DOP853 together say 0.4
+/// A mass that is let go on an unstretched spring of 1e4 rad/s, by whose velocity alone errors count: an odd function
+/// of the time, of which the terms that an estimate of order 5 sees vanish. Both estimates of DOP853 together say 0.4
 /// tolerances where it errs by 11.
 #[test]
 fn a_first_step_from_rest_errs_by_no_more_than_is_allowed() {

@@ -1,4 +1,5 @@
-//! What a user sees of an error: its sentence, by `Display` and by `Debug`, which is what a `main` that gives it back prints.
+//! What a user sees of an error: its sentence, by `Display` and by `Debug`, which is what a `main` that gives it back
+//! prints.
 
 use std::error::Error;
 
@@ -65,6 +66,7 @@ fn parameters_and_gaps_print_their_sentence() {
         [Gap { joint: "pin", component: "x", unit: "m" }, Gap { joint: "rod", component: "", unit: "rad" }];
     let gaps = |_: &[f64], r: &mut [f64]| r.copy_from_slice(&[1.0 / 3.0, -2e-7 / 3.0]);
     let open = close(&[], &GAPS, &gaps, &|_, terms| terms.fill(1.0)).unwrap_err();
-    let text = "the mechanism does not close: joint `pin` by 3.33e-1 m in x (allowed: 1e-10); also open: `rod` by -6.67e-8 rad";
+    let text = "the mechanism does not close: joint `pin` by 3.33e-1 m in x (allowed: 1e-10); \
+        also open: `rod` by -6.67e-8 rad";
     assert_eq!(printed(open), text);
 }

@@ -1,4 +1,5 @@
-//! A run that stops at a number which is not finite says which input or law it comes from, in the words of the description.
+//! A run that stops at a number which is not finite says which input or law it comes from, in the words of the
+//! description.
 
 use bg_model::bond_graph;
 use bg_model::capability::Named;
@@ -150,7 +151,8 @@ bond_graph! {
     /// A sign that changes with what it moves: in neither branch the guard keeps its sign.
     graph Relay {
         param level: m/s = 0.5;
-        1 j: translation; I m = 1 start 1; let side: N = if j.flow >= level { 1 } else { -1 }; MSe f = -1 * side; f -> j -> m;
+        1 j: translation; I m = 1 start 1; let side: N = if j.flow >= level { 1 } else { -1 }; MSe f = -1 * side;
+        f -> j -> m;
         R friction(v) = if v > 3 { sqrt(3 - v / 1) * v } else { 1 * v }; j -> friction;
     }
     graph Valve {

@@ -20,8 +20,8 @@ bond_graph! {
         observe { voltage: V = plates.effort; current: A = mesh.flow }
     }
 
-    /// Ten sections of a line of resistances and capacitors, without charge at the start: the charge of the last one begins with the tenth
-    /// power of the time, or with the eleventh where the source begins at zero.
+    /// Ten sections of a line of resistances and capacitors, without charge at the start: the charge of the last one
+    /// begins with the tenth power of the time, or with the eleventh where the source begins at zero.
     pub graph Line {
         input voltage: V;
         param resistance: Ohm = 1e3, above 0; param capacitance: F = 1e-9, above 0;
@@ -204,8 +204,8 @@ fn a_mechanism_of_another_size_takes_the_same_steps_to_the_same_bits() {
     }
 }
 
-/// The last voltage 20 us after the source begins, which is constant, or a ramp: at the start, or at `begins` (s), before which all
-/// is at rest.
+/// The last voltage 20 us after the source begins, which is constant, or a ramp: at the start, or at `begins` (s),
+/// before which all is at rest.
 fn last_of_line(method: Integrator, rtol: f64, begins: f64, is_ramp: bool) -> f64 {
     let voltage = if is_ramp {
         Input::table(Table::linear(&[0.0, begins, begins + 1e-5], &[0.0, 0.0, 1.0]).expect("a table"))

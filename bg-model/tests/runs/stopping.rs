@@ -220,8 +220,8 @@ fn at_the_instant_of_an_event_both_happen() {
     }
 }
 
-/// The guard x passes zero at t = 1 exactly. A condition a little before it leaves it as it was; one at the same instant or
-/// a little after it does not.
+/// The guard x passes zero at t = 1 exactly. A condition a little before it leaves it as it was; one at the same
+/// instant or a little after it does not.
 #[test]
 fn an_event_a_little_after_the_condition_is_not_told() {
     let falling = switched([|_, x| x[0]], |_, _: &SVector<f64, 1>, _: &[bool; 1]| [-1.0]);

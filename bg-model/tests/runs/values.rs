@@ -87,8 +87,8 @@ fn values_of_parameters_are_refused_in_the_words_of_the_description() {
     );
     assert_eq!(
         rod(|p| p.stretch = 2.0),
-        "the start orientation of body `rod` must be a rotation: its columns are not perpendicular to each other and of \
-         length 1; it depends on `stretch`"
+        "the start orientation of body `rod` must be a rotation: its columns are not perpendicular to each other and \
+         of length 1; it depends on `stretch`"
     );
     assert_eq!(
         rod(|p| p.stretch = -1.0),
@@ -110,7 +110,8 @@ fn inertias_of_parameters_are_refused() {
     );
     assert_eq!(
         said(|p| p.third = 2.1),
-        "the inertia of body `plate` must have no principal moment larger than the other two together; it depends on `third`"
+        "the inertia of body `plate` must have no principal moment larger than the other two together; \
+        it depends on `third`"
     );
     assert_eq!(said(|p| p.third = 0.0), "the inertia of body `plate` must be positive definite; it depends on `third`");
 }
@@ -124,7 +125,8 @@ fn what_the_assembly_decides_is_refused_by_start() {
     assert!(Fixed::<f64>::new(FixedParameters::default()).is_ok());
 }
 
-/// The gap along a direction of no stiffness is none to close; the others are, and a stiffness that happens to be 0 closes as any.
+/// The gap along a direction of no stiffness is none to close; the others are, and a stiffness that happens to be 0
+/// closes as any.
 #[test]
 fn a_point_on_a_line_starts_anywhere_on_it() {
     for k in [1e4, 0.0] {

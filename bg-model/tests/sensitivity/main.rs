@@ -16,7 +16,8 @@ use bg_model::simulation::Samples;
 bond_graph! {
     /// A rod on a hinge that does not give, with what it loses.
     graph Pendulum {
-        param angle: rad = 0.4; param length: m = 0.6, above 0; param friction: N*m*s/rad = 0.05; param gravity: m/s^2 = 9.81;
+        param angle: rad = 0.4; param length: m = 0.6, above 0; param friction: N*m*s/rad = 0.05;
+        param gravity: m/s^2 = 9.81;
         param spin: rad/s = 1;
         gravity [0, -gravity, 0];
         ground { point pivot = [0, 0, 0]; }
@@ -27,13 +28,15 @@ bond_graph! {
         }
         joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
         drive brake on pin torque = -friction * pin.speed;
-        observe { angle: rad = rod.angle; x: m = rod.position.x; force: N = pin.force.y; lost: J = integral(brake.power) }
+        observe { angle: rad = rod.angle; x: m = rod.position.x; force: N = pin.force.y;
+            lost: J = integral(brake.power) }
         scenes only;
         scene Pendulum { expect planar; }
     }
     /// A block on a spring, whose contact resists its two directions differently, with a jump between them.
     graph Block {
-        param mass: kg = 1, above 0; param stiffness: N/m = 100, above 0; param cut: N*s/m = 5; param back: N*s/m = 1; param drop: N = 0.2; param start: m = 0.5;
+        param mass: kg = 1, above 0; param stiffness: N/m = 100, above 0; param cut: N*s/m = 5; param back: N*s/m = 1;
+        param drop: N = 0.2; param start: m = 0.5;
         1 slide: translation; I block = mass; C spring = stiffness start start;
         R saw(v) = if v < 0 { cut * v - drop } else { back * v + drop };
         slide -> block; slide -> spring; slide -> saw;
@@ -41,7 +44,8 @@ bond_graph! {
     }
     /// A mass that a belt carries until its spring tears it off.
     graph Belt {
-        param mass: kg = 2, above 0; param stiffness: N/m = 50, above 0; param belt: m/s = 0.1; param still: N = 6; param kinetic: N = 4;
+        param mass: kg = 2, above 0; param stiffness: N/m = 50, above 0; param belt: m/s = 0.1; param still: N = 6;
+        param kinetic: N = 4;
         1 slide: translation; I body = mass start mass * belt; C spring = stiffness;
         Sf drum = belt; 0 between: translation; 1 slip: translation;
         drum -> between -> slide -> body; slide -> spring; between -> slip;
@@ -57,7 +61,8 @@ bond_graph! {
     }
     /// The same on a table that is lifted faster and faster.
     graph Lifted {
-        param mass: kg = 2, above 0; param height: m = 1.25; param gravity: m/s^2 = 9.81; param give: 1 = 0.8; param rise: m/s^2 = 1.5;
+        param mass: kg = 2, above 0; param height: m = 1.25; param gravity: m/s^2 = 9.81; param give: 1 = 0.8;
+        param rise: m/s^2 = 1.5;
         1 fall: translation; I ball = mass; Se weight = -mass * gravity; weight -> fall -> ball;
         MSf table = rise * t; 0 between: translation; 1 apart: translation; table -> between -> fall; between -> apart;
         stop floor on apart { at most 0; start -height; restitution give; }
@@ -65,7 +70,8 @@ bond_graph! {
     }
     /// A ball that falls on a floor which gives way, and keeps the speed at which it met it.
     graph Dropped {
-        param mass: kg = 0.5, above 0; param height: m = 0.05; param gravity: m/s^2 = 9.81; param stiffness: N/m = 1e4; param give: 1 = 0.7;
+        param mass: kg = 0.5, above 0; param height: m = 0.05; param gravity: m/s^2 = 9.81; param stiffness: N/m = 1e4;
+        param give: 1 = 0.7;
         gravity [0, -gravity, 0];
         ground { point O = [0, 0, 0]; }
         body ball { mass mass; inertia [1e-3, 1e-3, 1e-3]; start at [0, 0.1 + height, 0]; }
@@ -76,8 +82,10 @@ bond_graph! {
     }
     /// A wheel whose speed a computer keeps, with a limit; every so often it looks at the angle, too.
     graph Sampled {
-        param period: s = 0.02, above 0; param delay: s = 0.003, at least 0; param wanted: rad/s = 10; param gain: N*m*s/rad = 3;
-        param integral: N*m/rad = 9; param most: N*m = 12, above 0; param inertia: kg*m^2 = 0.5, above 0; param began: rad/s = 1;
+        param period: s = 0.02, above 0; param delay: s = 0.003, at least 0; param wanted: rad/s = 10;
+        param gain: N*m*s/rad = 3;
+        param integral: N*m/rad = 9; param most: N*m = 12, above 0; param inertia: kg*m^2 = 0.5, above 0;
+        param began: rad/s = 1;
         every period offset delay {
             sample error: rad/s = wanted - shaft.flow - correction;
             sample wish: N*m = gain * error + integral * sum.last;
@@ -87,7 +95,8 @@ bond_graph! {
         every 5 * period { sample correction: rad/s = 0.1 * shaft.displacement / (1 s); }
         MSe motor = torque; 1 shaft: rotation; I wheel = inertia start inertia * began; R rub(w) = 0.4 * w * abs(w);
         motor -> shaft -> wheel; shaft -> rub;
-        observe { speed: rad/s = shaft.flow; angle: rad = shaft.displacement; torque: N*m = torque; work: J = integral(motor.power) }
+        observe { speed: rad/s = shaft.flow; angle: rad = shaft.displacement; torque: N*m = torque;
+            work: J = integral(motor.power) }
     }
     /// A mass on a spring.
     graph Oscillator {
@@ -97,11 +106,17 @@ bond_graph! {
     }
     /// A slider and a crank of rigid joints, whose loop the assembly closes.
     graph Crank {
-        param radius: m = 0.2, above 0; param rod: m = 0.6, above 0; param angle: rad = 1; param spin: rad/s = -8; param drag: N*s/m = 2;
+        param radius: m = 0.2, above 0; param rod: m = 0.6, above 0; param angle: rad = 1; param spin: rad/s = -8;
+        param drag: N*s/m = 2;
         ground { point O = [0, 0, 0]; }
-        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-radius / 2, 0, 0]; point b = [radius / 2, 0, 0]; start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0]; start spin [0, 0, spin]; }
-        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-rod / 2, 0, 0]; point c = [rod / 2, 0, 0]; start b at [radius * cos(angle), radius * sin(angle), 0]; start turned rotation_z(guess(-0.3)); start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
-        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0]; start velocity [guess(0), guess(0), 0]; }
+        body crank { mass 1; inertia [0.02, 0.02, 0.02]; point a = [-radius / 2, 0, 0]; point b = [radius / 2, 0, 0];
+            start a at [0, 0, 0]; start turned rotation_z(angle); start velocity [guess(0), guess(0), 0];
+            start spin [0, 0, spin]; }
+        body link { mass 0.5; inertia [0.01, 0.01, 0.01]; point b = [-rod / 2, 0, 0]; point c = [rod / 2, 0, 0];
+            start b at [radius * cos(angle), radius * sin(angle), 0]; start turned rotation_z(guess(-0.3));
+            start velocity [guess(0), guess(0), 0]; start spin [0, 0, guess(0)]; }
+        body slider { mass 0.7; inertia [0.01, 0.01, 0.01]; start at [guess(0.7), 0, 0];
+            start velocity [guess(0), guess(0), 0]; }
         joint pin_o: revolute z (ground.O -> crank.a) { rigid; }
         joint pin_a: revolute z (crank.b -> link.b) { rigid; }
         joint pin_b: revolute z (link.c -> slider) { rigid; }

@@ -1,7 +1,7 @@
 //! A block that a spring draws to and fro on a slide, under a contact that resists the two directions differently.
 //!
-//! Look at `v` and `force_x`: where the velocity changes its sign, the resistance switches between `cut` and `back`, and the
-//! force has a kink. Each switching is an event, found to rounding; the summary counts them.
+//! Look at `v` and `force_x`: where the velocity changes its sign, the resistance switches between `cut` and `back`,
+//! and the force has a kink. Each switching is an event, found to rounding; the summary counts them.
 //!
 //!     cargo run --release --example contact -- --t-end 3 --set cut=8
 

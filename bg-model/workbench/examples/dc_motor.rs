@@ -1,7 +1,7 @@
 //! A direct-current motor that turns a flywheel through a gear.
 //!
-//! Look at `current`: it leaps up while the rotor stands still and falls as the motor's own voltage rises with the speed. The
-//! voltage is an input and 0 unless it is given.
+//! Look at `current`: it leaps up while the rotor stands still and falls as the motor's own voltage rises with the
+//! speed. The voltage is an input and 0 unless it is given.
 //!
 //!     cargo run --release --example dc_motor -- --t-end 2 --input voltage=12
 

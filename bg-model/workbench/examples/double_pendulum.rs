@@ -1,7 +1,7 @@
 //! A double pendulum: two uniform rods that hang on compliant pins without damping.
 //!
-//! Look at `elbow_angle`, which never repeats itself, and at `stored` and `supplied`, which stay equal up to a constant. The
-//! scene `rigid-pendulum` has pins that do not give: 7 states, and no fast oscillation in the pins.
+//! Look at `elbow_angle`, which never repeats itself, and at `stored` and `supplied`, which stay equal up to a
+//! constant. The scene `rigid-pendulum` has pins that do not give: 7 states, and no fast oscillation in the pins.
 //!
 //!     cargo run --release --example double_pendulum -- --scene rigid-pendulum --set upper_angle=2.5
 
@@ -33,7 +33,8 @@ bond_graph! {
         ground { point O = [0, 0, 0]; }
         body upper {
             mass upper_mass;
-            inertia [upper_mass * upper_length * upper_length / 12, 1e-4, upper_mass * upper_length * upper_length / 12];
+            inertia [upper_mass * upper_length * upper_length / 12, 1e-4,
+                upper_mass * upper_length * upper_length / 12];
             point top = [0, upper_length / 2, 0];
             point bottom = [0, -upper_length / 2, 0];
             start top at [0, 0, 0];
@@ -41,7 +42,8 @@ bond_graph! {
         }
         body lower {
             mass lower_mass;
-            inertia [lower_mass * lower_length * lower_length / 12, 1e-4, lower_mass * lower_length * lower_length / 12];
+            inertia [lower_mass * lower_length * lower_length / 12, 1e-4,
+                lower_mass * lower_length * lower_length / 12];
             point top = [0, lower_length / 2, 0];
             start top at [upper_length * sin(upper_angle), -upper_length * cos(upper_angle), 0];
             start turned rotation_z(lower_angle);

@@ -1,7 +1,7 @@
 //! A rigid body in free rotation, in bond-graph words: a multibond junction, a tensor that turns with the body.
 //!
-//! Look at `w` and `h`: the angular velocity changes, the angular momentum does not, for the tensor of inertia turns with the
-//! body. `R` is the rotation matrix; its columns are the body's axes.
+//! Look at `w` and `h`: the angular velocity changes, the angular momentum does not, for the tensor of inertia turns
+//! with the body. `R` is the rotation matrix; its columns are the body's axes.
 //!
 //!     cargo run --release --example free_body -- --t-end 30
 

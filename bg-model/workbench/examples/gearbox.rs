@@ -1,14 +1,15 @@
 //! A direct-current motor, a rigid gearbox and two flywheels.
 //!
-//! The rotor and the flywheel turn at speeds in a fixed ratio, so only one of them has a momentum to integrate. Look at `tooth`, the
-//! torque that the gearbox hands on: the compiler solves for it.
+//! The rotor and the flywheel turn at speeds in a fixed ratio, so only one of them has a momentum to integrate. Look at
+//! `tooth`, the torque that the gearbox hands on: the compiler solves for it.
 //!
 //!     cargo run --release --example gearbox -- --t-end 2 --input voltage=12
 
 use bg_model::bond_graph;
 
 bond_graph! {
-    /// Electrical and rotational, without any compliance between rotor and flywheel: the flywheel is in derivative causality.
+    /// Electrical and rotational, without any compliance between rotor and flywheel: the flywheel is in derivative
+    /// causality.
     pub graph Gearbox {
         /// Resistance of the winding.
         param winding: Ohm = 0.8, above 0;

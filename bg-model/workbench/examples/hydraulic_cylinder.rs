@@ -1,7 +1,7 @@
 //! A hydraulic cylinder that lifts a load: pump, compressible oil, throttle to the tank.
 //!
-//! Look at `pressure`: the oil is a stiff spring under the load, so it rings before the load moves steadily. The pump's flow is
-//! an input; without one the load sinks through the throttle.
+//! Look at `pressure`: the oil is a stiff spring under the load, so it rings before the load moves steadily. The pump's
+//! flow is an input; without one the load sinks through the throttle.
 //!
 //!     cargo run --release --example hydraulic_cylinder -- --t-end 0.5 --step 1e-3 --input pump_flow=2e-4
 

@@ -1,7 +1,7 @@
 //! A ball that circles a point of the ground on a spring, in three dimensions.
 //!
-//! Look at `position`: a circle in a plane that is tilted. At another speed the spring stretches and slackens, and the path is a
-//! rosette.
+//! Look at `position`: a circle in a plane that is tilted. At another speed the spring stretches and slackens, and the
+//! path is a rosette.
 //!
 //!     cargo run --release --example orbit -- --t-end 10 --set speed=2
 
@@ -30,7 +30,8 @@ bond_graph! {
             start velocity [0, 0.6 * speed, 0.8 * speed];
         }
         spring band (ground.O -> ball) { stiffness stiffness; length length; }
-        observe { position: m = ball.position; mass: kg = ball.linear.p.y / ball.velocity.y; stored: J = stored_energy; force: N = band.force; }
+        observe { position: m = ball.position; mass: kg = ball.linear.p.y / ball.velocity.y; stored: J = stored_energy;
+            force: N = band.force; }
     }
 }
 

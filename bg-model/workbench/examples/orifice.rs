@@ -1,15 +1,15 @@
 //! An orifice at rest: where every hydraulic model starts, and where the square root of its law has an infinite slope.
 //!
-//! Look at `flow`: `root(p, laminar)` is linear for small pressures, so the run starts without trouble. A smaller `laminar`
-//! brings the law closer to the root.
+//! Look at `flow`: `root(p, laminar)` is linear for small pressures, so the run starts without trouble. A smaller
+//! `laminar` brings the law closer to the root.
 //!
 //!     cargo run --release --example orifice -- --t-end 1 --set laminar=10
 
 use bg_model::bond_graph;
 
 bond_graph! {
-    /// A pump whose pressure rises from zero fills a tank through an orifice. The law is that of a sharp edge, q = c a sqrt(2 p / rho),
-    /// linear where the flow is laminar.
+    /// A pump whose pressure rises from zero fills a tank through an orifice. The law is that of a sharp edge, q = c a
+    /// sqrt(2 p / rho), linear where the flow is laminar.
     pub graph Orifice {
         /// Rise of the pump's pressure.
         param rise: Pa/s = 1e5;

@@ -1,6 +1,7 @@
 //! A pendulum on a compliant pin, and the force in the pin.
 //!
-//! Look at `force_y`: at the lowest place the pin bears more than three times what the rod weighs. `lost` is what the pin's damping takes.
+//! Look at `force_y`: at the lowest place the pin bears more than three times what the rod weighs. `lost` is what the
+//! pin's damping takes.
 //!
 //!     cargo run --release --example pendulum -- --t-end 2 --set length=0.8
 

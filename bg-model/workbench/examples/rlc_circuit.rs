@@ -1,7 +1,7 @@
 //! A series circuit of resistor, coil and capacitor on a voltage source.
 //!
-//! Look at `current` and `capacitor_voltage` after the voltage is switched on: they ring at 159 Hz and die out. The voltage is
-//! an input and 0 unless it is given.
+//! Look at `current` and `capacitor_voltage` after the voltage is switched on: they ring at 159 Hz and die out. The
+//! voltage is an input and 0 unless it is given.
 //!
 //!     cargo run --release --example rlc_circuit -- --t-end 0.05 --step 1e-4 --input voltage=12
 

@@ -1,8 +1,8 @@
 //! A slider-crank: crank, connecting rod and slider with compliant pins and slide.
 //!
 //! A closed loop of three bodies. Look at `slider_x`, and at `slider_y`, by how much the slide gives. The scene
-//! `planar-slider-crank` has the same outputs from 20 states in place of 56, the scene `rigid-slider-crank` pins that do not
-//! give; `compare literal rigid-slider-crank` says how far they are apart.
+//! `planar-slider-crank` has the same outputs from 20 states in place of 56, the scene `rigid-slider-crank` pins that
+//! do not give; `compare literal rigid-slider-crank` says how far they are apart.
 //!
 //!     cargo run --release --example slider_crank -- --t-end 2 --scene planar-slider-crank
 

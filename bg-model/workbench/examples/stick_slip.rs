@@ -1,7 +1,8 @@
 //! A mass that a belt carries along until its spring tears it off: stick and slip.
 //!
-//! Look at `force`: while the mass sticks the friction grows with the spring's pull, up to the static limit; then it drops to
-//! that of sliding until the speeds are equal again. Both are events, found to rounding. A faster belt ends the sticking.
+//! Look at `force`: while the mass sticks the friction grows with the spring's pull, up to the static limit; then it
+//! drops to that of sliding until the speeds are equal again. Both are events, found to rounding. A faster belt ends
+//! the sticking.
 //!
 //!     cargo run --release --example stick_slip -- --t-end 5 --set belt=0.2
 

@@ -1,7 +1,8 @@
 //! A train: twenty wagons on springs between their hooks, each a part, and what makes them swing against each other.
 //!
-//! Look at `wagon[0].speed` and `wagon[19].speed`: the train starts in its mode number `mode`, so that each wagon swings with
-//! one frequency, 2 sqrt(stiffness / mass) sin(pi mode / 40). With `coupler_damping` the swinging dies out and the train stands.
+//! Look at `wagon[0].speed` and `wagon[19].speed`: the train starts in its mode number `mode`, so that each wagon
+//! swings with one frequency, 2 sqrt(stiffness / mass) sin(pi mode / 40). With `coupler_damping` the swinging dies out
+//! and the train stands.
 //!
 //!     cargo run --release --example train -- --set mode=3 --set coupler_damping=2e4
 

@@ -120,8 +120,8 @@ pub use bg_model;
 pub use compiled::Compiled;
 pub use program::Program;
 
-/// Does what the program's arguments ask for of the mechanism `Me`, and gives the exit code: 0 done, 1 the run or an output
-/// failed, 2 the input cannot be used. In WebAssembly it answers a page from then on, see [`live`].
+/// Does what the program's arguments ask for of the mechanism `Me`, and gives the exit code: 0 done, 1 the run or an
+/// output failed, 2 the input cannot be used. In WebAssembly it answers a page from then on, see [`live`].
 #[must_use]
 pub fn main<Me: Scenes>() -> ExitCode {
     Program::of::<Me>().main(std::env::args_os())

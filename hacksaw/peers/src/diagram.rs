@@ -71,8 +71,8 @@ pub fn draw(series: &[Series]) -> Result<String, String> {
     let (_, body) = svg.split_once('>').ok_or("no SVG")?;
     let (width, height) = (WIDTH * UNITS, HEIGHT * UNITS);
     Ok(format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {width} {height}\" \
-         role=\"img\" aria-label=\"Work-precision diagram\">{body}"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {width} \
+         {height}\" role=\"img\" aria-label=\"Work-precision diagram\">{body}"
     ))
 }
 

@@ -1,5 +1,5 @@
-//! What the models of the scenes calculate: golden outputs, their literal model, errors and counts, derivatives; and what
-//! the program says and draws of a run.
+//! What the models of the scenes calculate: golden outputs, their literal model, errors and counts, derivatives; and
+//! what the program says and draws of a run.
 
 mod checks;
 mod figures;

@@ -258,7 +258,8 @@ fn help_and_the_list_name_every_parameter() {
         let output = hacksaw(directory.path(), arguments).assert().success().get_output().clone();
         String::from_utf8(output.stdout).unwrap()
     };
-    let names = "torque crank_angle gravity density r_cut r_return k_2 r_2 k_23 r_23 k_34 r_34 k_15 r_15 k_45 r_45 k_45r r_45r k_work r_work";
+    let names = "torque crank_angle gravity density r_cut r_return k_2 r_2 k_23 r_23 k_34 r_34 k_15 r_15 k_45 r_45 \
+        k_45r r_45r k_work r_work";
     for arguments in [&["--help"][..], &["run", "--help"], &["parameters"]] {
         let text = text(arguments);
         for name in names.split(' ') {

@@ -129,7 +129,8 @@ fn extras(rng: &mut Rng, index: usize, statements: &mut Vec<String>) {
         let law = scalar(rng, &["v".to_owned(), "push".to_owned()], 2);
         let axis = one(rng, &["x", "y", "z"]);
         statements.push(format!(
-            "contact rub{index} (ground.wall -> b{index}.P along {axis}) {{ x: R(v) = {law}; y: C = k, R = 10; z: R = 1; }}"
+            "contact rub{index} (ground.wall -> b{index}.P along {axis}) {{ x: R(v) = {law}; y: C = k, R = 10; \
+            z: R = 1; }}"
         ));
     }
 }

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 
 use super::Input;
 
-/// The texts of valid macro calls below the workspace's folder: the stages' models, the example models, the gallery, the hacksaw,
-/// the parser's example.
+/// The texts of valid macro calls below the workspace's folder: the stages' models, the example models, the gallery,
+/// the hacksaw, the parser's example.
 ///
 /// # Errors
 /// A folder or file that cannot be read.
@@ -28,8 +28,8 @@ pub fn seeds(workspace: &Path) -> io::Result<Vec<String>> {
     Ok(texts)
 }
 
-/// The kept inputs of a folder by file name: `*.bond` is a macro call, `*.toml` a parameter file, `*.set` one text after
-/// `--set` a line.
+/// The kept inputs of a folder by file name: `*.bond` is a macro call, `*.toml` a parameter file, `*.set` one text
+/// after `--set` a line.
 ///
 /// # Errors
 /// A folder or file that cannot be read.

@@ -43,8 +43,8 @@ pub fn growth(progress: Progress) -> Sheet {
     }
     Sheet {
         name: "hacksaw-out-of-plane",
-        about: "the symmetric mechanism in space, disturbed by 1e-12 out of its plane: the largest and the last departure \
-                over 5 s, over the disturbance",
+        about: "the symmetric mechanism in space, disturbed by 1e-12 out of its plane: the largest and the last \
+                departure over 5 s, over the disturbance",
         head: &["integrator", "rtol", "largest", "last", "steps", "failure"],
         rows,
     }
@@ -70,8 +70,8 @@ pub fn sampling(progress: Progress) -> Sheet {
     }
     Sheet {
         name: "hacksaw-fine-samples",
-        about: "the paper's case for 0.02 s with samples 1e-6 s apart: the largest pose error at the steps' ends and at the \
-                samples, and the largest jump of a pose at a step's end; fixed steps are of 1e-4 s",
+        about: "the paper's case for 0.02 s with samples 1e-6 s apart: the largest pose error at the steps' ends and \
+                at the samples, and the largest jump of a pose at a step's end; fixed steps are of 1e-4 s",
         head: &["integrator", "rtol", "steps", "ends", "between", "ratio", "jump", "failure"],
         rows,
     }
@@ -91,8 +91,8 @@ pub fn ending(progress: Progress) -> Sheet {
     }
     Sheet {
         name: "hacksaw-ends-at-switchings",
-        about: "runs that end at a switching instant, one rounding before and one after it: the difference of the end to the \
-                same instant of a longer run, and the switchings told",
+        about: "runs that end at a switching instant, one rounding before and one after it: the difference of the end \
+                to the same instant of a longer run, and the switchings told",
         head: &["integrator", "switching", "end", "difference", "events", "failure"],
         rows,
     }
@@ -122,8 +122,8 @@ pub fn endurance_of(seconds: u32, progress: Progress) -> Sheet {
     }
     Sheet {
         name: "hacksaw-endurance",
-        about: "the paper's case for 1000 s: the largest imbalance over the energies, orthogonality, switchings in each fifth, \
-                and by how much the memory in use has grown",
+        about: "the paper's case for 1000 s: the largest imbalance over the energies, orthogonality, switchings in \
+                each fifth, and by how much the memory in use has grown",
         head: &["integrator", "rtol", "imbalance", "orthogonality", "events", "steps", "kB more", "failure"],
         rows,
     }

@@ -1,7 +1,7 @@
 //! Andrews' squeezing mechanism: seven bodies in the plane on ten pins, a motor, a spring.
 //!
-//! In: nothing. Out: the mechanism on ideal pins, on bushings of given stiffness, and on bushings through the 1/k law. A
-//! bushing is the same in all directions of the plane. The start is the ideal mechanism's, at rest, so bushings ring.
+//! In: nothing. Out: the mechanism on ideal pins, on bushings of given stiffness, and on bushings through the 1/k law.
+//! A bushing is the same in all directions of the plane. The start is the ideal mechanism's, at rest, so bushings ring.
 //! Moments of inertia about x and y do not matter in the plane; they are such that a body can have them.
 
 use bg_model::bond_graph;

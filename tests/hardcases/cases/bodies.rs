@@ -194,8 +194,8 @@ pub fn dzhanibekov() -> Case {
     turning_over("dzhanibekov", 10.0, 1.0, 1e-6)
 }
 
-/// The body up to t = 50, turned over three times: whoever is late by a little at one time is so by a hundred times that
-/// at the next. Tolerances above 1e-9 say nothing.
+/// The body up to t = 50, turned over three times: whoever is late by a little at one time is so by a hundred times
+/// that at the next. Tolerances above 1e-9 say nothing.
 #[must_use]
 pub fn long_dzhanibekov() -> Case {
     turning_over("dzhanibekov-long", 50.0, 1e6, 1e-10)

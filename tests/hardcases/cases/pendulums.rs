@@ -27,8 +27,8 @@ bond_graph! {
         scene SpringPendulum { expect planar; expect states = 4; }
     }
 
-    /// A pendulum of reduced length 1 m on a pin: half a metre to the centre of mass, 1/4 kg m^2 about it. Its point at 1 m
-    /// moves as a point mass on a bar without mass does.
+    /// A pendulum of reduced length 1 m on a pin: half a metre to the centre of mass, 1/4 kg m^2 about it. Its point at
+    /// 1 m moves as a point mass on a bar without mass does.
     pub graph BarOnPin {
         param stiffness: N/m = 4e5, above 0;
         param damping: N*s/m = 1e3, at least 0;
@@ -44,7 +44,8 @@ bond_graph! {
             stiffness stiffness; damping damping; tilt stiffness 1e3; tilt damping 1e2;
         }
         observe {
-            x: m = bar.end.position.x; y: m = bar.end.position.y; u: m/s = bar.end.velocity.x; v: m/s = bar.end.velocity.y;
+            x: m = bar.end.position.x; y: m = bar.end.position.y; u: m/s = bar.end.velocity.x;
+            v: m/s = bar.end.velocity.y;
         }
         scenes only;
         /// On a compliant pin.

@@ -140,7 +140,8 @@ table { border-collapse: collapse; font-variant-numeric: tabular-nums; width: 10
 th, td { text-align: left; padding: .25rem .8rem .25rem 0; border-bottom: 1px solid var(--line); vertical-align: top; }
 th { color: var(--pencil); font-weight: 500; }
 small { display: block; color: var(--pencil); }
-.reached { color: var(--good); } .missed, .too-costly, .too-loose, .unchecked { color: var(--fair); } .failed { color: var(--pencil); }
+.reached { color: var(--good); } .missed, .too-costly, .too-loose, .unchecked { color: var(--fair); \
+} .failed { color: var(--pencil); }
 .wrong { color: var(--bad); font-weight: 700; }
 ";
 
@@ -151,8 +152,9 @@ pub fn page(cases: &[Case], rows: &[Row], tolerances: &[f64], sheets: &[Sheet]) 
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Hard cases</title>\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<style>{STYLE}</style>\n</head>\n\
          <body>\n<h1>Hard cases</h1>\n<p>Each integrator on each case: verdict, error at the end, attempted steps and \
-         rates. Reached: the error is within 100 times the tolerance, times the case's amplification; wrong: above 1000 \
-         times, without an error being reported. Fixed-step methods have no tolerance and are not judged.</p>\n"
+         rates. Reached: the error is within 100 times the tolerance, times the case's amplification; \
+         wrong: above 1000 times, without an error being reported. Fixed-step methods have no tolerance and are not \
+         judged.</p>\n"
     );
     for case in cases {
         section(&mut page, case, rows, tolerances);
@@ -164,7 +166,8 @@ pub fn page(cases: &[Case], rows: &[Row], tolerances: &[f64], sheets: &[Sheet]) 
 fn section(page: &mut String, case: &Case, rows: &[Row], tolerances: &[f64]) {
     let mut put = |text: std::fmt::Arguments| page.write_fmt(text).expect("a string");
     put(format_args!(
-        "<h2>{}</h2>\n<p>{}. {} states to t = {:e} s; {:?} error against: {}. Amplification {:e}.</p>\n<table>\n<tr><th></th>",
+        "<h2>{}</h2>\n<p>{}. {} states to t = {:e} s; {:?} error against: {}. Amplification \
+        {:e}.</p>\n<table>\n<tr><th></th>",
         case.name,
         escaped(case.source),
         case.problem.states(),

@@ -122,7 +122,8 @@ pub fn kaps() -> Case {
     let instants = vec![0.25, 0.5, 1.0];
     Case {
         name: "kaps",
-        source: "K. Dekker, J. Verwer, Stability of Runge-Kutta methods, section 7.5.2; C. Kennedy, M. Carpenter 2016, section 10",
+        source: "K. Dekker, J. Verwer, Stability of Runge-Kutta methods, section 7.5.2; \
+            C. Kennedy, M. Carpenter 2016, section 10",
         held_against: CLOSED,
         measure: Measure::Relative,
         absolute: 1e-2,

@@ -1,4 +1,5 @@
-//! SUNDIALS' slider-crank: a crank and a rod between whose middles a spring and a damper act, pushed by a constant force.
+//! SUNDIALS' slider-crank: a crank and a rod between whose middles a spring and a damper act, pushed by a constant
+//! force.
 //!
 //! In: nothing. Out: the mechanism with ideal joints, and with compliant ones through the 1/k law. The published
 //! equations put the rod's mass at the slider; here a rod and a slider share it at one point, which is the same.

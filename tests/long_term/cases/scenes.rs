@@ -1,7 +1,7 @@
 //! Conservative scenes, from an oscillator to the hacksaw.
 //!
-//! In: nothing. Out: [`scenes`]: problems whose rows are invariants, each over its size, and last the orthogonality of the
-//! orientations, max |R R^T - 1|, where there are any.
+//! In: nothing. Out: [`scenes`]: problems whose rows are invariants, each over its size, and last the orthogonality of
+//! the orientations, max |R R^T - 1|, where there are any.
 
 use bg_model::bond_graph;
 use bg_model::nalgebra::SVector;
@@ -55,7 +55,8 @@ bond_graph! {
         }
     }
 
-    /// Two rods in space without weight, on spherical joints of 1e4 N/m: the double pendulum that keeps its moment about O.
+    /// Two rods in space without weight, on spherical joints of 1e4 N/m: the double pendulum that keeps its moment
+    /// about O.
     pub graph RodsInSpace {
         ground { point O = [0, 0, 0]; }
         body upper {

@@ -43,8 +43,8 @@ pub fn against_step(periods: f64, progress: &mut dyn FnMut(&str)) -> Sheet {
     }
     Sheet {
         name: "drift-against-step",
-        about: "conservative scenes: the largest deviation of the energy and of the angular momentum over their sizes, max \
-                |R R^T - 1|, and the order with which the energy's deviation falls with the mean step",
+        about: "conservative scenes: the largest deviation of the energy and of the angular momentum over their sizes, \
+                max |R R^T - 1|, and the order with which the energy's deviation falls with the mean step",
         head: &[
             "scene",
             "integrator",
@@ -79,8 +79,8 @@ pub fn against_time(periods: f64, progress: &mut dyn FnMut(&str)) -> Sheet {
     }
     Sheet {
         name: "drift-against-time",
-        about: "the same over the longest run, the energy also in its first hundredth and tenth; growth is the power of the \
-                time in the last nine tenths: 0 bounded, 1/2 a random walk, 1 linear",
+        about: "the same over the longest run, the energy also in its first hundredth and tenth; \
+                growth is the power of the time in the last nine tenths: 0 bounded, 1/2 a random walk, 1 linear",
         head: &[
             "scene",
             "integrator",

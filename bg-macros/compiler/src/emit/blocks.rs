@@ -305,8 +305,10 @@ mod tests {
         let [first, part, last] = [0, 1, 2].map(|index| blocks.part(&groups[index]).code(""));
         assert_eq!(first, "::bg_model::__private::store(v, 0, [v0]);");
         let expected = "for i in 0..4 { let a0 = 0 + 2 * i;\n\
-                        let a1 = { static PLACES: [usize; 4] = [0, 1, 3, 5]; PLACES[i] };\nlet a2 = 3 + 2 * i;\nlet a3 = 1 + 2 * i;\n\
-                        let [v150] = *::bg_model::__private::window(v, a0);\nlet [v151] = *::bg_model::__private::window(v, a1);\n\
+                        let a1 = { static PLACES: [usize; 4] = [0, 1, 3, 5]; \
+                        PLACES[i] };\nlet a2 = 3 + 2 * i;\nlet a3 = 1 + 2 * i;\n\
+                        let [v150] = *::bg_model::__private::window(v, a0);\nlet [v151] = \
+                        *::bg_model::__private::window(v, a1);\n\
                         let [v152, _, v153] = *::bg_model::__private::window(x, a2);\n\
                         ::bg_model::__private::store(v, a3, [v148, v149]); }";
         assert_eq!(part, expected);

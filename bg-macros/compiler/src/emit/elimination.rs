@@ -1,7 +1,7 @@
 //! Factorisation and solution of I - c J as tokens.
 //!
-//! In: an [`Elimination`]. Out: the bodies of functions that do it, generic over a scalar `S` and a field `F`: one `let`
-//! for each step over arrays of fixed size, or tables of the steps.
+//! In: an [`Elimination`]. Out: the bodies of functions that do it, generic over a scalar `S` and a field `F`: one
+//! `let` for each step over arrays of fixed size, or tables of the steps.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -15,8 +15,8 @@ fn value(slot: usize) -> Ident {
     format_ident!("a{slot}")
 }
 
-/// Longer factorisations are tables alone. rustc's time for unrolled complex ones grows faster than their length: 0.5 s for
-/// 600 steps, 80 s for 9400.
+/// Longer factorisations are tables alone. rustc's time for unrolled complex ones grows faster than their length: 0.5 s
+/// for 600 steps, 80 s for 9400.
 const UNROLLED: usize = 2000;
 
 pub(super) fn is_unrolled(elimination: &Elimination) -> bool {

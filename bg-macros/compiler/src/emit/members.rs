@@ -177,7 +177,8 @@ mod tests {
         drive motor on revolute torque = 1;
         friction rub on prismatic { coulomb 1; }
         stop end on prismatic { at most 1; stiffness 1; }
-        1 shaft: rotation; I wheel = 1; R loss = 1; C twist(q) = stiff * q; 0 twisted: rotation; I second = 1; 1 far: rotation;
+        1 shaft: rotation; I wheel = 1; R loss = 1; C twist(q) = stiff * q; 0 twisted: rotation; I second = 1; \
+        1 far: rotation;
         shaft -> wheel; shaft -> loss; shaft -> twisted -> far; twisted -> twist; far -> second;";
 
     #[test]

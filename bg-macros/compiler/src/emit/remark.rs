@@ -10,7 +10,8 @@ use quote::{quote, quote_spanned};
 use crate::pipeline::Compiled;
 use crate::system::equations::Origin;
 
-/// So many reactions are those of four hinges in space: from there on their matrix, and code for it, take most of a build.
+/// So many reactions are those of four hinges in space: from there on their matrix, and code for it, take most of a
+/// build.
 const MANY: usize = 20;
 
 /// The warnings.
@@ -40,8 +41,8 @@ fn in_joint_coordinates(scene: &Compiled) -> bool {
 fn remark(model: &Compiled) -> TokenStream {
     let name = &model.source.name;
     let note = format!(
-        "beside its scenes the whole graph `{}` is compiled, with {} reactions of rigid joints in each rate, which takes most \
-         of this build; if nobody runs it as it is, write `scenes only;` in the graph",
+        "beside its scenes the whole graph `{}` is compiled, with {} reactions of rigid joints in each rate, which \
+         takes most of this build; if nobody runs it as it is, write `scenes only;` in the graph",
         name.text,
         reactions(model),
     );

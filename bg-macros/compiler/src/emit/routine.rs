@@ -170,7 +170,8 @@ mod tests {
         let handed = "let v999 = v998 . sin () ; :: bg_model :: __private :: store (v , 0 , [v999]) ; } \
                       { let v999 = v [0] ; let v1000 = v999 . sin () ;";
         assert!(text.contains(handed), "{text}");
-        let last = "{ let v1999 = v [1] ; let v2000 = v1999 . sin () ; :: bg_model :: __private :: store (v , 2 , [v2000]) ; }";
+        let last = "{ let v1999 = v [1] ; let v2000 = v1999 . sin () ; :: bg_model :: __private :: store (v , 2 , \
+            [v2000]) ; }";
         assert!(text.ends_with(last));
         assert_eq!(results, ["v [2]"]);
     }

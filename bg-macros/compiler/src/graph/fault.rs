@@ -267,10 +267,13 @@ impl Explain for GraphFault {
             }
             F::TableSize { .. } => "write at least two points, `[[0, 1], [2, 3]]`".to_owned(),
             F::TableRow { .. } => {
-                "write a row of the second arguments, then rows of a first one with its values: `[[y1, y2], [x1, v11, v12], ..]`"
+                "write a row of the second arguments, then rows of a first one with its values: `[[y1, y2], [x1, v11, \
+                v12], ..]`"
                     .to_owned()
             }
-            F::TableOfTwo { word: "monotone", .. } => "write `spline`, or leave the word out for straight lines".to_owned(),
+            F::TableOfTwo { word: "monotone", .. } => "write `spline`, or leave the word out for straight \
+                lines"
+                .to_owned(),
             F::TableOfTwo { word: "periodic", .. } => "write `held` or `continued`".to_owned(),
             F::TableOfTwo { .. } => "use its values at two places".to_owned(),
             F::TablePeriod { .. } => {
@@ -282,7 +285,9 @@ impl Explain for GraphFault {
             F::LastOutside { sample } => format!("write `{sample}`, which is held until the next instant"),
             F::SampleCycle { name } => format!("write `{name}.last` for its value before the instant"),
             F::DelayAtStart => {
-                "write the value that the signal has before the run; `delay(SIGNAL, TIME, START)` takes it too".to_owned()
+                "write the value that the signal has before the run; `delay(SIGNAL, TIME, START)` takes it \
+                too"
+                .to_owned()
             }
             F::DelayTime { .. } => "write a multiple of it, such as `delay(x, 20 ms)` in `every 1 ms`".to_owned(),
             F::UnitOrName { symbol, .. } => {
@@ -297,8 +302,8 @@ impl Explain for GraphFault {
                 let (effort, flow) = (left.effort_dimension(), Dimension::WATT.per(right.effort_dimension()));
                 let ratio = flow.per(Dimension::WATT.per(effort));
                 format!(
-                    "put a GY between them, effort of the one by flow of the other, `GY g = E; {from} -> g -> {to};` with E in {}, \
-                     or a TF, flow by flow, with E in {ratio}",
+                    "put a GY between them, effort of the one by flow of the other, `GY g = E; \
+                     {from} -> g -> {to};` with E in {}, or a TF, flow by flow, with E in {ratio}",
                     effort.per(flow)
                 )
             }

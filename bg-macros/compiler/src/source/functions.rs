@@ -89,8 +89,8 @@ pub const FUNCTIONS: [Function; 31] = [
         ..function(
             "unwrapped",
             (&[("y", Scalar), ("x", Scalar), ("w", Scalar)], Scalar),
-            "The angle of the point (x, y) with its turns, rad, where w is its speed, or nearly. Only in a `let` and in \
-             `observe`.",
+            "The angle of the point (x, y) with its turns, rad, where w is its speed, or nearly. Only in a `let` and \
+             in `observe`.",
             "y and x alike, w in rad/s; the result in rad",
             "turned: rad = unwrapped(rod.x_axis.y, rod.x_axis.x, pin.speed);",
         )
@@ -170,7 +170,8 @@ pub const FUNCTIONS: [Function; 31] = [
     function(
         "guess",
         (ONE, Scalar),
-        "An unknown of the assembly, pose or velocity, first guessed as a; of `[a, b, c]` one for each. Only in starts.",
+        "An unknown of the assembly, pose or velocity, first guessed as a; \
+        of `[a, b, c]` one for each. Only in starts.",
         "that of a",
         "start turned rotation_z(guess(0.3));",
     ),

@@ -106,7 +106,8 @@ mod tests {
 
     #[test]
     fn a_call_has_what_it_uses() {
-        let graph = "graph G { part p: GearPair; Se m = 1; 1 a: rotation; 1 b: rotation; I i = 1; m -> a -> p.first; p.second -> b -> i; }";
+        let graph = "graph G { part p: GearPair; Se m = 1; 1 a: rotation; 1 b: rotation; I i = 1; m -> a -> p.first; \
+            p.second -> b -> i; }";
         assert_eq!(called(&format!("use gears; {graph}")), Ok(vec![1]));
         let said = |text: &str, words: &str| {
             let fault = called(text).expect_err(text);

@@ -53,8 +53,8 @@ impl Explain for SceneFault {
             F::NothingRigid => "remove it, or make a joint rigid".to_owned(),
             F::NoScene => "remove it, or add a scene: `scene NAME { }`".to_owned(),
             F::AdjustsMore { name, first, .. } => format!(
-                "with `scenes only;` the first scene stands for the graph: add `{name}` to `tune` of `{first}`, or put a scene \
-                 first that keeps them all"
+                "with `scenes only;` the first scene stands for the graph: add `{name}` to `tune` of `{first}`, or put \
+                 a scene first that keeps them all"
             ),
         }
     }

@@ -37,7 +37,8 @@ pub const WORDS: &[Word] = &[
     word("graph", "A mechanism, machine or circuit: `graph NAME { .. }`. It becomes a model."),
     word(
         "part",
-        "A piece of machine, described once: `part NAME { .. }`; or a use of one: `part NAME: PART { PARAMETER = VALUE; }`.",
+        "A piece of machine, described once: `part NAME { .. }`; or a use of one: `part NAME: PART { PARAMETER = \
+        VALUE; }`.",
     ),
     // Statements.
     word(
@@ -51,7 +52,8 @@ pub const WORDS: &[Word] = &[
     word("let", "A name for an expression: `let force: N = area * pressure;`. A unit, where given, is checked."),
     word(
         "table",
-        "A function by its points: `table curve: rpm -> N*m = [[0, 12], [1500, 0]], spline, held;`, called as `curve(shaft.flow)`.",
+        "A function by its points: `table curve: rpm -> N*m = [[0, 12], [1500, 0]], spline, held;`, called as \
+        `curve(shaft.flow)`.",
     ),
     word("state", "A state of the graph's own, by its rate: `state angle: rad = shaft.flow start 0;`."),
     word(
@@ -60,11 +62,13 @@ pub const WORDS: &[Word] = &[
     ),
     word(
         "every",
-        "A digital controller's block: its samples are computed at instants and held in between: `every 1 ms { sample .. }`.",
+        "A digital controller's block: its samples are computed at instants and held in between: `every 1 ms { sample \
+        .. }`.",
     ),
     word(
         "sample",
-        "A value that is computed at each instant of its block: `sample seen: rad = shaft.displacement;`. `seen.last` is the one before.",
+        "A value that is computed at each instant of its block: `sample seen: rad = shaft.displacement;`. `seen.last` \
+        is the one before.",
     ),
     word("offset", "When the first instant of a block `every` is, s; 0 when left out."),
     word("while", "The condition of a `memory`: a comparison."),
@@ -81,7 +85,8 @@ pub const WORDS: &[Word] = &[
     word("gravity", "The acceleration of all bodies, inertial axes: `gravity [0, -9.81, 0];`."),
     word(
         "body",
-        "A rigid body: solids or `mass` and `inertia`, points, a start: `body rod { cuboid [0.6, 0.03, 0.03] density 7850; }`.",
+        "A rigid body: solids or `mass` and `inertia`, points, a start: `body rod { cuboid [0.6, 0.03, 0.03] density \
+        7850; }`.",
     ),
     word(
         "joint",
@@ -94,12 +99,13 @@ pub const WORDS: &[Word] = &[
     word("drive", "A torque, force or speed on a joint or body: `drive motor on pin torque = 5;`."),
     word(
         "contact",
-        "Two shapes that push and never pull: `contact tip (cam profile lift -> roller circle 5 mm) { stiffness 1e6; damping 50; }`; \
-          or a point on a line: `contact c (a.P -> b.Q along x) { y: C = soft; }`.",
+        "Two shapes that push and never pull: `contact tip (cam profile lift -> roller circle 5 mm) { stiffness 1e6; \
+          damping 50; }`; or a point on a line: `contact c (a.P -> b.Q along x) { y: C = soft; }`.",
     ),
     word(
         "friction",
-        "Dry friction that sticks, on a joint, contact or junction: `friction rub on pin { coulomb 0.1; radius 20 mm; }`.",
+        "Dry friction that sticks, on a joint, contact or junction: `friction rub on pin { coulomb 0.1; radius 20 mm; \
+        }`.",
     ),
     word("stop", "An end of the way of a joint or junction: `stop ends on guide { at most 0.2; restitution 0.6; }`."),
     word("orifice", "Flow through an opening, on a hydraulic 1-junction: `orifice valve on pipe { area 1e-6; .. }`."),
@@ -107,7 +113,8 @@ pub const WORDS: &[Word] = &[
     of(
         BODY,
         "start",
-        "Where the body starts: `start at [0, 1, 0];`, `start turned rotation_z(0.5);`, `start velocity [1, 0, 0];`, `start spin [0, 0, 9];`.",
+        "Where the body starts: `start at [0, 1, 0];`, `start turned rotation_z(0.5);`, `start velocity [1, 0, 0];`, \
+        `start spin [0, 0, 9];`.",
     ),
     word("start", "A value at t = 0."),
     word("baumgarte", "A rate, 1/s, at which gaps of rigid joints close, in place of a projection after each step."),
@@ -154,7 +161,8 @@ pub const WORDS: &[Word] = &[
     word("rigid", "The joint does not give way; its reactions are solved for."),
     word(
         "clearance",
-        "The play of a pin or slider, m: within it nothing acts. `stiffness`, and a `damping` or `restitution`, are those of the contact.",
+        "The play of a pin or slider, m: within it nothing acts. `stiffness`, and a `damping` or `restitution`, are \
+        those of the contact.",
     ),
     of(JOINT, "length", "Of a slider with play: how long it is, m."),
     word("length", "Of a solid, m."),
@@ -177,7 +185,8 @@ pub const WORDS: &[Word] = &[
     word("exponent", "n: the force of what touches is k d^n with the depth d; 1.5 is Hertz's for round shapes."),
     word(
         "dissipation",
-        "a, s/m: the force of what touches is times 1 + 3/2 a v, with the rate v of the depth; Hunt and Crossley's law.",
+        "a, s/m: the force of what touches is times 1 + 3/2 a v, with the rate v of the depth; \
+        Hunt and Crossley's law.",
     ),
     of(STOP, "restitution", "The part of its speed, 0 to 1, with which what hits the stop leaves it."),
     word(
@@ -203,7 +212,8 @@ pub const WORDS: &[Word] = &[
     word("to", "Where an arc ends, rad."),
     word(
         "profile",
-        "A cam by its outline, a periodic table of the radius over the angle, or a track by its height: `profile lift`.",
+        "A cam by its outline, a periodic table of the radius over the angle, or a track by its height: `profile \
+        lift`.",
     ),
     word("along", "The axis along which something lies, acts or slides."),
     word("about", "The axis about which something acts."),
@@ -237,7 +247,8 @@ pub const WORDS: &[Word] = &[
     // Scenes.
     word(
         "tune",
-        "The parameters that can still be set: `tune { length }`, `tune all but { mass }`. The others are their defaults, as numbers.",
+        "The parameters that can still be set: `tune { length }`, `tune all but { mass }`. The others are their \
+        defaults, as numbers.",
     ),
     word("without", "Elements and drives that the scene leaves out: `without { motor }`."),
     of(

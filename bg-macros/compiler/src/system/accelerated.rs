@@ -1,11 +1,11 @@
 //! The derivatives of the rates of trees of joints, with the accelerations as unknowns.
 //!
 //! In: [`StateEquations`] with bodies in joint coordinates. Out: the entries of f_x, f_l, r_x and r_l, where l are the
-//! accelerations and then the reactions of joints that close loops, r the efforts of the tree and the rates of the flows
-//! that these joints hold. A rate of a speed is its acceleration. An effort depends on nothing beyond the joints that
-//! carry its link and those that it carries (`inverse`), so there are no more entries, and the inverse of the mass
-//! matrix is never multiplied out: the elimination factors the matrix by its branches
-//! (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 6.5).
+//! accelerations and then the reactions of joints that close loops, r the efforts of the tree and the rates of the
+//! flows that these joints hold. A rate of a speed is its acceleration. An effort depends on nothing beyond the joints
+//! that carry its link and those that it carries (`inverse`), so there are no more entries, and the inverse of the mass
+//! matrix is never multiplied out: the elimination factors the matrix by its branches (Featherstone, Rigid Body
+//! Dynamics Algorithms, 2008, section 6.5).
 
 use std::collections::BTreeMap;
 
@@ -14,8 +14,8 @@ use super::jacobian::{Entry, Jacobian, equations_of};
 use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::equations::StateEquations;
 
-/// The derivatives; none where the states are no coordinates of more than one freedom, or reactions of dry friction and of
-/// stops are left, which lock no joint (`reduce::tree::locking`).
+/// The derivatives; none where the states are no coordinates of more than one freedom, or reactions of dry friction and
+/// of stops are left, which lock no joint (`reduce::tree::locking`).
 pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
     let mut pool = equations.pool.clone();
     let inverse = equations.inverse.as_ref()?;
@@ -64,7 +64,8 @@ pub(super) fn differentiate(equations: &StateEquations) -> Option<Jacobian> {
     Some(closed(pool, equations, inverse, (unknowns, late), entries))
 }
 
-/// Which unknowns the rates depend on, through the equations of others as well: not those of joints that nobody watches.
+/// Which unknowns the rates depend on, through the equations of others as well: not those of joints that nobody
+/// watches.
 fn needed(entries: &[Entry], n: usize, unknowns: usize) -> Vec<bool> {
     let mut needed = vec![false; unknowns];
     let mut is_open = true;
@@ -110,8 +111,8 @@ fn flow_rates(pool: &mut Pool, equations: &StateEquations, rates: &[Id]) -> Vec<
     derivative(pool, &flows, &seeds)
 }
 
-/// 1 where a link slides or nothing holds it, else 0; and what a link that sticks has in its equation: the rate of its speed
-/// is known.
+/// 1 where a link slides or nothing holds it, else 0; and what a link that sticks has in its equation: the rate of its
+/// speed is known.
 fn held(pool: &mut Pool, inverse: &InverseDynamics, of: (usize, usize)) -> [Id; 2] {
     let Some(locked) = inverse.moved[of.0].locked else { return [pool.one(), pool.zero()] };
     let (slides, unknown) = (locked.slides(pool), pool.symbol(inverse.symbol(of)));

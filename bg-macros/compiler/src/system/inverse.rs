@@ -58,7 +58,8 @@ pub struct Row {
     pub acting: Id,
 }
 
-/// How many unknowns a link has: the rate of its speed, or motion and accelerations of a body that keeps its orientation.
+/// How many unknowns a link has: the rate of its speed, or motion and accelerations of a body that keeps its
+/// orientation.
 const OWN: usize = 9;
 
 impl InverseDynamics {
@@ -126,8 +127,8 @@ impl InverseDynamics {
         roots
     }
 
-    /// The equations of the efforts, in the order of the unknowns that they give: of a link with a coordinate that along
-    /// it, of a body that keeps its orientation those of the moment and, where nothing holds it, of the force.
+    /// The equations of the efforts, in the order of the unknowns that they give: of a link with a coordinate that
+    /// along it, of a body that keeps its orientation those of the moment and, where nothing holds it, of the force.
     pub fn rows(&self, pool: &mut Pool) -> Vec<Row> {
         let accelerated = self.accelerated(pool);
         let composites = self.composites(pool, &accelerated);
@@ -179,8 +180,8 @@ impl InverseDynamics {
         all
     }
 
-    /// What acts on each link and on all that it carries: moment about its origin and force in its axes, with what drives
-    /// its own freedom.
+    /// What acts on each link and on all that it carries: moment about its origin and force in its axes, with what
+    /// drives its own freedom.
     fn acting(&self, pool: &mut Pool) -> Vec<[Value; 2]> {
         let mut all: Vec<[Value; 2]> = self.moved.iter().map(|moved| moved.load.clone()).collect();
         for (k, link) in self.links.iter().enumerate().rev() {
@@ -499,7 +500,8 @@ impl Composite {
         Motion([swung.add(pool, &across(drift[0], drift[1])), across(c[y], minus), pulled])
     }
 
-    /// How the moment about an axis changes with the angular velocity by what drifts inside: 2 r x (w x v) over the mass.
+    /// How the moment about an axis changes with the angular velocity by what drifts inside: 2 r x (w x v) over the
+    /// mass.
     fn drifting(&self, pool: &mut Pool, k: usize) -> Value {
         let (x, y) = ((k + 1) % 3, (k + 2) % 3);
         let twice = |pool: &mut Pool, place: usize| pool.scale(-2.0, self.swirl.0[place]);

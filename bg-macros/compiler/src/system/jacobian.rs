@@ -1,15 +1,15 @@
 //! The exact derivatives of the rates.
 //!
-//! In: [`Ordered`] equations. Out: the places where df/dx can differ from zero, each with its expression, and df/dt, in a
-//! [`Jacobian`] with a pool of its own, so that no other function's order of operations depends on it. An entry that is
-//! identically zero has no place.
-//! Method: forward accumulation, one sweep for each column (Griewank & Walther 2008, Evaluating Derivatives, ch. 3).
-//! What the rates share, such as the force in a joint, is differentiated once for all rows, as equal expressions are
-//! one node. The reactions of rigid joints couple every state with every other, while the equations that give them are
-//! sparse. So these stand beside the rates, and the reactions beside the states: df/dx is f_x - f_l (r_l)^-1 r_x of the
-//! rates f(x, l) with r(x, l) = 0, and nobody has to multiply it out. Dry friction among them keeps df/dx itself, by
-//! the implicit function theorem from the factors that solve for the reactions: where others hold already what sticks,
-//! r_l has no inverse. Of trees of joints the accelerations are unknowns as well (`accelerated`).
+//! In: [`Ordered`] equations. Out: the places where df/dx can differ from zero, each with its expression, and df/dt, in
+//! a [`Jacobian`] with a pool of its own, so that no other function's order of operations depends on it. An entry that
+//! is identically zero has no place. Method: forward accumulation, one sweep for each column (Griewank & Walther 2008,
+//! Evaluating Derivatives, ch. 3). What the rates share, such as the force in a joint, is differentiated once for all
+//! rows, as equal expressions are one node. The reactions of rigid joints couple every state with every other, while
+//! the equations that give them are sparse. So these stand beside the rates, and the reactions beside the states: df/dx
+//! is f_x - f_l (r_l)^-1 r_x of the rates f(x, l) with r(x, l) = 0, and nobody has to multiply it out. Dry friction
+//! among them keeps df/dx itself, by the implicit function theorem from the factors that solve for the reactions: where
+//! others hold already what sticks, r_l has no inverse. Of trees of joints the accelerations are unknowns as well
+//! (`accelerated`).
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -28,7 +28,8 @@ pub struct Jacobian {
     /// The accelerations and reactions that stand beside the states, each with the equation that gives it: rows and
     /// columns after those of the states.
     pub unknowns: Vec<Symbol>,
-    /// How many of these, the last ones, may have nothing on the diagonal of their equation until others are eliminated.
+    /// How many of these, the last ones, may have nothing on the diagonal of their equation until others are
+    /// eliminated.
     pub late: usize,
     /// The entries, row by row, in each row by column.
     pub entries: Vec<Entry>,
@@ -190,7 +191,8 @@ mod tests {
     #[test]
     fn only_what_depends_has_a_place_row_by_row() {
         let (equations, jacobian) = differentiated(
-            "param k: N/m = 3; 1 j: translation; C s = k; I m = 2; R r = 5; j -> s; j -> m; j -> r; observe { w: J = integral(r.power) }",
+            "param k: N/m = 3; 1 j: translation; C s = k; I m = 2; R r = 5; j -> s; j -> m; j -> r; \
+            observe { w: J = integral(r.power) }",
         );
         let name = |index: usize| equations.states[index].name.as_str();
         let places: Vec<_> = jacobian.places().into_iter().map(|(row, column)| (name(row), name(column))).collect();
@@ -268,9 +270,11 @@ mod tests {
     #[test]
     fn dry_friction_leaves_no_reaction_beside_the_states() {
         let (equations, mut jacobian) = differentiated(
-            "param k: N/m = 5; param c: N*s/m = 3; 1 a, b: translation; I ma = 2; I mb = 3; C s = k; MSe pull = 3 * sin(2 * t);
+            "param k: N/m = 5; param c: N*s/m = 3; 1 a, b: translation; I ma = 2; I mb = 3; C s = k; \
+            MSe pull = 3 * sin(2 * t);
              R ra(v) = c * v holds 2; R rab(v) = 1 holds 2;
-             pull -> a -> ma; a -> ra; a -> s; b -> mb; 0 ab: translation; 1 sab: translation; a -> ab -> b; ab -> sab -> rab;",
+             pull -> a -> ma; a -> ra; a -> s; b -> mb; 0 ab: translation; 1 sab: translation; a -> ab -> b; \
+             ab -> sab -> rab;",
         );
         assert!(jacobian.unknowns.is_empty());
         let (n, states) = (equations.states.len(), anywhere(&equations));

@@ -1,7 +1,7 @@
 //! Links of a tree of joints: what moves each, and vectors and matrices between its axes and those of its parent.
 //!
-//! In: a link with its coordinate. Out: values of one in the axes of the other. A link's own freedom is about or along its
-//! third axis.
+//! In: a link with its coordinate. Out: values of one in the axes of the other. A link's own freedom is about or along
+//! its third axis.
 
 use crate::expr::{Id, Pool};
 use crate::system::Value;

@@ -104,7 +104,8 @@ mod tests {
     /// A body whose point `top` is 0.5 m above its centre of mass.
     const BOB: &str = "ground { point O = [0, 0, 0]; point P = [0.3, 0, 1]; }
         body bob { mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.5, 0]; point side = [0.4, 0.5, 1];
-            start top at [0, 0, 0]; start turned rotation_z(0.7); start velocity [0.3, 0.1, 0]; start spin [0.1, 0, 2]; }
+            start top at [0, 0, 0]; start turned rotation_z(0.7); start velocity [0.3, 0.1, 0]; \
+            start spin [0.1, 0, 2]; }
         joint pin: revolute z (ground.O -> bob.top) { rigid; }";
     const SECOND: &str = "joint second: revolute z (ground.P -> bob.side) { rigid; }";
 

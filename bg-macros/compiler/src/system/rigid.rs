@@ -1,9 +1,10 @@
 //! Rigid links of a tree: their mass, how they move, and the wrenches that this takes.
 //!
-//! In: links with their coordinates. Out: values in the axes of each link. Accelerations are those of the links' origins,
-//! so that no velocity of a point is needed; what turning does is linear in the products of an angular velocity's
-//! components. A full tensor is written by second moments, of which a wrench takes fewer terms (Khalil and Dombre, Modeling,
-//! Identification and Control of Robots, 2002, section 9.5, has the field of accelerations for forces).
+//! In: links with their coordinates. Out: values in the axes of each link. Accelerations are those of the links'
+//! origins, so that no velocity of a point is needed; what turning does is linear in the products of an angular
+//! velocity's components. A full tensor is written by second moments, of which a wrench takes fewer terms (Khalil and
+//! Dombre, Modeling, Identification and Control of Robots, 2002, section 9.5, has the field of accelerations for
+//! forces).
 
 use super::link::{Freedom, Link, Moved, down};
 use crate::expr::{Id, Pool};
@@ -36,8 +37,8 @@ pub struct Accelerated {
 }
 
 impl Accelerated {
-    /// Of links with these angular velocities, on a ground with this acceleration. `own` has of each link the rate of its
-    /// speed, or what is known of its accelerations beside those that carry it.
+    /// Of links with these angular velocities, on a ground with this acceleration. `own` has of each link the rate of
+    /// its speed, or what is known of its accelerations beside those that carry it.
     pub fn of(
         pool: &mut Pool,
         links: &[Link],
@@ -209,8 +210,8 @@ impl Mass {
         Value((0..9).map(|k| if k % 4 == 0 { sums[k / 4] } else { pool.neg(second[k]) }).collect())
     }
 
-    /// Whether moments take fewer terms by the tensor than by second moments: these are diagonal, and neither of the first
-    /// two is zero.
+    /// Whether moments take fewer terms by the tensor than by second moments: these are diagonal, and neither of the
+    /// first two is zero.
     pub fn is_by_tensor(&self, pool: &Pool) -> bool {
         let zero = |k: usize| pool.is_zero(self.second.0[k]);
         [1, 2, 3, 5, 6, 7].into_iter().all(zero) && ![0, 4].into_iter().any(zero)

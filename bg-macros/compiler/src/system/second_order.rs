@@ -1,9 +1,9 @@
 //! The states of second order and their second derivatives.
 //!
-//! In: [`Projected`] equations. Out: the same with their states [`Ordered`]; of these [`Closed`] the displacements and orientations that
-//! follow the momenta, each with d2x/dt2 as a function of the states and their rates, in a [`SecondOrder`] with a pool
-//! of its own. In a bond graph these are the kinematics: where things are follows from how they move. What a resistor
-//! moves, as a spring in series with a damper, is of first order.
+//! In: [`Projected`] equations. Out: the same with their states [`Ordered`]; of these [`Closed`] the displacements and
+//! orientations that follow the momenta, each with d2x/dt2 as a function of the states and their rates, in a
+//! [`SecondOrder`] with a pool of its own. In a bond graph these are the kinematics: where things are follows from how
+//! they move. What a resistor moves, as a spring in series with a damper, is of first order.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -126,8 +126,8 @@ pub enum Substep {
     },
 }
 
-/// Plans the elimination for a Jacobian of `n` states and `unknowns` after them with these places. Of the equations of the
-/// last `late` unknowns the place on the diagonal may be zero until others are eliminated.
+/// Plans the elimination for a Jacobian of `n` states and `unknowns` after them with these places. Of the equations of
+/// the last `late` unknowns the place on the diagonal may be zero until others are eliminated.
 ///
 /// # Panics
 /// If no order has something on the diagonal of each pivot.

@@ -18,8 +18,8 @@ pub(super) struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern of a matrix with these places of `n` rows of states, on whose diagonal is something, and of `unknowns`,
-    /// on whose diagonal the last `late` may have nothing.
+    /// The pattern of a matrix with these places of `n` rows of states, on whose diagonal is something, and of
+    /// `unknowns`, on whose diagonal the last `late` may have nothing.
     pub(super) fn new(n: usize, unknowns: usize, late: usize, places: &[(usize, usize)]) -> Self {
         let size = n + unknowns;
         let diagonal = (0..size).map(|row| row < n).collect();

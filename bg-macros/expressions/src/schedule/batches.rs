@@ -1,7 +1,7 @@
 //! Straight-line programs in batches of one kind, as an interpreter reads them.
 //!
-//! In: operations. Out: the words of a table, which `bg_model::tabled` describes and reads. Method: of what is ready each
-//! time all of the kind that there is most of, so that a batch is one loop without a choice in it.
+//! In: operations. Out: the words of a table, which `bg_model::tabled` describes and reads. Method: of what is ready
+//! each time all of the kind that there is most of, so that a batch is one loop without a choice in it.
 
 use std::mem::{Discriminant, discriminant};
 

@@ -27,8 +27,8 @@ pub(super) struct Load {
 }
 
 impl Board<'_> {
-    /// The cost of the drawing as it stands; none where it is more than `most`. No part of it is negative, so those that
-    /// are quick to find come first: most drawings are found too dear by them.
+    /// The cost of the drawing as it stands; none where it is more than `most`. No part of it is negative, so those
+    /// that are quick to find come first: most drawings are found too dear by them.
     pub(super) fn cost(&mut self, most: i64) -> Option<i64> {
         let apart: i64 = self.problem.links.iter().map(|&link| self.shape_cost(link)).sum();
         let mut cost = apart + self.straightness() + self.frame_cost();

@@ -1,13 +1,13 @@
 //! Criteria: one number of a run each, written as `max |pin.force|` or `range(speed, 2..) / mean(speed, 2..)`.
 //!
-//! In: texts, a model's description. Out: what has to be known of a run for all of them ([`Measure`]s of signals), their
-//! values, and exact derivatives by parameters ([`of_run`]). All is calculated in coherent SI, and shown in the units
-//! that the model's outputs have.
+//! In: texts, a model's description. Out: what has to be known of a run for all of them ([`Measure`]s of signals),
+//! their values, and exact derivatives by parameters ([`of_run`]). All is calculated in coherent SI, and shown in the
+//! units that the model's outputs have.
 //!
-//! A number is made of numbers (with units: `30 rpm`), parameters and measures, by `+ - * / ^`, `abs sqrt sin cos tan exp
-//! ln`, `max(a, b, ..)`, `min(a, b, ..)`. A measure is a number of a signal, which is made of outputs, parameters and the
-//! time `t` likewise; `|F|` is the length of a vector or the magnitude of a number. Behind a comma stands a window of
-//! time, `2..` or `2..5` s.
+//! A number is made of numbers (with units: `30 rpm`), parameters and measures, by `+ - * / ^`, `abs sqrt sin cos tan
+//! exp ln`, `max(a, b, ..)`, `min(a, b, ..)`. A measure is a number of a signal, which is made of outputs, parameters
+//! and the time `t` likewise; `|F|` is the length of a vector or the magnitude of a number. Behind a comma stands a
+//! window of time, `2..` or `2..5` s.
 //!
 //! | measure | of a signal |
 //! |---|---|
@@ -229,8 +229,8 @@ impl Signal {
         outputs_of(std::iter::once(&self.node))
     }
 
-    /// Its values in that unit at `times` (s), of a model with these values of its parameters; `column` has the values of
-    /// an output there, of those that it reads.
+    /// Its values in that unit at `times` (s), of a model with these values of its parameters; `column` has the values
+    /// of an output there, of those that it reads.
     pub fn values<'a>(
         &self,
         model: &Description,

@@ -2,8 +2,8 @@
 //!
 //! In: criteria, a model, what is asked of a run. Out: what is known of a run for all of them; the same with slopes.
 //! Method: largest and least values are those of the solution ([`PeakMonitor`]); the derivative of one is that of the
-//! signal at its instant, since the instant does not count there, or where it lies at an event, that of the signal as the
-//! event moves. What is over time is of straight lines between samples, and so is its derivative.
+//! signal at its instant, since the instant does not count there, or where it lies at an event, that of the signal as
+//! the event moves. What is over time is of straight lines between samples, and so is its derivative.
 
 use std::cell::RefCell;
 

@@ -3,8 +3,8 @@
 //! In: a model, measured columns, which parameters may change. Out: their values with confidence intervals and
 //! correlations, what the data do not say, residuals. Method: least squares ([`fit()`]) on exact derivatives
 //! ([`bg_model::sensitivity`]). A residual counts in parts of its column's noise, which is what the column's residuals
-//! come to: the fit is repeated until that settles. A parameter that is positive is fitted by its logarithm. Where a fit
-//! leaves no noise, others are made from other starts, on growing parts of the data.
+//! come to: the fit is repeated until that settles. A parameter that is positive is fitted by its logarithm. Where a
+//! fit leaves no noise, others are made from other starts, on growing parts of the data.
 
 mod data;
 pub mod fit;

@@ -1,9 +1,10 @@
 //! Fits on growing parts of the data, from several starts.
 //!
-//! In: a model, data, variables with their starts. Out: the fit that leaves least. Method: where a fit of all data leaves
-//! no noise it has come to another minimum, or the model is another one. Then the first part of the data is fitted, in
-//! which an oscillation is not yet off by half a turn, and from there twice as much each time; after that the same from
-//! starts around the given ones, spread evenly (J. H. Halton, Numer. Math. 2 (1960) 84-90), until noise is left.
+//! In: a model, data, variables with their starts. Out: the fit that leaves least. Method: where a fit of all data
+//! leaves no noise it has come to another minimum, or the model is another one. Then the first part of the data is
+//! fitted, in which an oscillation is not yet off by half a turn, and from there twice as much each time; after that
+//! the same from starts around the given ones, spread evenly (J. H. Halton, Numer. Math. 2 (1960) 84-90), until noise
+//! is left.
 
 use bg_model::mechanism::Followed;
 use bg_model::run::Request;
@@ -14,7 +15,8 @@ use super::{Data, Identified, IdentifyError, Variable, fitted};
 const PARTS: [f64; 4] = [0.0625, 0.125, 0.25, 0.5];
 /// The starts beside the given one.
 const STARTS: u32 = 8;
-/// How far they are away at most, in parts of a variable's size: of one that is fitted by its logarithm a factor of two.
+/// How far they are away at most, in parts of a variable's size: of one that is fitted by its logarithm a factor of
+/// two.
 const FAR: f64 = std::f64::consts::LN_2;
 /// The bases of the starts' digits.
 const BASES: [u32; 8] = [2, 3, 5, 7, 11, 13, 17, 19];

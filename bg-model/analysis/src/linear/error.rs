@@ -15,8 +15,8 @@ pub enum LinearError {
     Parameter(#[from] ParameterError),
     /// A derivative is not finite.
     #[error(
-        "the rate of `{of}` has no finite derivative by {by} at t = {t:?} s: linearise at another state, or smooth the law \
-         that it depends on there, such as a square root at zero by `root`"
+        "the rate of `{of}` has no finite derivative by {by} at t = {t:?} s: linearise at another state, or smooth the \
+         law that it depends on there, such as a square root at zero by `root`"
     )]
     NotFinite {
         /// The state whose rate it is.

@@ -1,7 +1,7 @@
 //! The best of several searches, and the front of two goals.
 //!
-//! In: a task, what makes searches, several at once if it can. Out: the best one with the others; for two goals minima of
-//! the first one with the second one bounded, each bound a little lower.
+//! In: a task, what makes searches, several at once if it can. Out: the best one with the others; for two goals minima
+//! of the first one with the second one bounded, each bound a little lower.
 
 use super::{Coordinate, Job, Minimum, OptimizeError, Task};
 

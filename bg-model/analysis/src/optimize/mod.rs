@@ -1,11 +1,11 @@
 //! Optima: the parameters with which a number of a run is least, subject to others.
 //!
 //! In: goals, requirements, variables with bounds, a model. Out: the best values that were found, from one start or
-//! several; of two goals the front, where none of them gets better without the other one getting worse. Method: a search
-//! on exact derivatives (`search`), which go through events ([`Look::slopes`]); a largest value in time is the largest
-//! of those of parts of the time, each of which is smooth where the largest one changes. A variable that is positive is
-//! changed by its logarithm. A front is found by bounds on one goal that the other one is subject to (Y. Y. Haimes, L. S.
-//! Lasdon, D. A. Wismer, IEEE Trans. Syst. Man Cybern. 1 (1971) 296).
+//! several; of two goals the front, where none of them gets better without the other one getting worse. Method: a
+//! search on exact derivatives (`search`), which go through events ([`Look::slopes`]); a largest value in time is the
+//! largest of those of parts of the time, each of which is smooth where the largest one changes. A variable that is
+//! positive is changed by its logarithm. A front is found by bounds on one goal that the other one is subject to (Y. Y.
+//! Haimes, L. S. Lasdon, D. A. Wismer, IEEE Trans. Syst. Man Cybern. 1 (1971) 296).
 
 mod front;
 mod search;

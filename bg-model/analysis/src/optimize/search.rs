@@ -1,9 +1,9 @@
 //! One search from one start, by sequential least-squares programming.
 //!
 //! In: what is evaluated at variables, with derivatives where it is wanted. Out: the best variables that were seen.
-//! Method: D. Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28 (1988), as the crate `basin`
-//! has it. A goal that is the largest of several numbers becomes a bound above all of them, which is smooth where its
-//! largest one changes. All numbers are in parts of their sizes at the start.
+//! Method: D. Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28 (1988), as the crate
+//! `basin` has it. A goal that is the largest of several numbers becomes a bound above all of them, which is smooth
+//! where its largest one changes. All numbers are in parts of their sizes at the start.
 
 use std::cell::{Cell, RefCell};
 use std::ops::ControlFlow;
@@ -282,8 +282,8 @@ mod tests {
         (end, closed)
     }
 
-    /// W. Hock, K. Schittkowski, Test Examples for Nonlinear Programming Codes (1981), problem 71: at the optimum the goal
-    /// is 17.0140173.
+    /// W. Hock, K. Schittkowski, Test Examples for Nonlinear Programming Codes (1981), problem 71: at the optimum the
+    /// goal is 17.0140173.
     #[test]
     fn a_problem_of_the_literature_is_solved() {
         let problem: Function = |x| {

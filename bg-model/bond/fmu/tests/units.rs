@@ -31,7 +31,8 @@ graph Pendulum {
 }
 "#;
 const PART: &str = "pub part Hanger {
-    param k: N/m = 40, above 0; 1 slide: translation; I body = 3; C spring = k start 0.2; slide -> body; slide -> spring;
+    param k: N/m = 40, above 0; 1 slide: translation; I body = 3; C spring = k start 0.2; slide -> body; \
+    slide -> spring;
 }";
 
 /// The text with its part, as if both stood in files.

@@ -30,8 +30,9 @@ pub enum Question {
         /// The text.
         text: String,
     },
-    /// The words and functions of a text: `{ "words": [{ "bytes": [FROM, TO], "block": .., "word": .. }] }`, the words in
-    /// the order of the text, then the functions, whose block is `null`. What is told of them is in the file beside the page.
+    /// The words and functions of a text: `{ "words": [{ "bytes": [FROM, TO], "block": .., "word": .. }] }`, the words
+    /// in the order of the text, then the functions, whose block is `null`. What is told of them is in the file beside
+    /// the page.
     Words {
         /// The text.
         text: String,

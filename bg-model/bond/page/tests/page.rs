@@ -31,7 +31,8 @@ fn text(name: &str) -> String {
 fn questions() -> Vec<Value> {
     let first = text("first");
     let order = json!({ "scene": "literal", "parameters": { "length": 0.8 }, "inputs": [], "begin": "model",
-        "integration": { "t_end": 1.0, "step": 0.01, "method": "auto", "rtol": 1e-8, "atol": null, "fixed_step": 1e-4 } });
+        "integration": { "t_end": 1.0, "step": 0.01, "method": "auto", "rtol": 1e-8, "atol": null,
+        "fixed_step": 1e-4 } });
     vec![
         json!({ "ask": "report" }),
         json!({ "ask": "check", "text": first }),

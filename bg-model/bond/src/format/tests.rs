@@ -21,8 +21,8 @@ fn becomes(text: &str, expected: &str) {
 #[test]
 fn statements_have_lines_and_operators_blanks() {
     becomes(
-        "use   \"a.bond\" ; pub(crate)   graph A{ /// Mass.\n param m:kg * m ^ 2/s^ -1=-2*3 ,above 0;1 j[3] : rotation ;\
-         R r( w )=1e-3*w+tanh( w/0.1 )-( -w );a->j ->m; for i in 0 .. 3{ j->a [i-1] .hub; } }",
+        "use   \"a.bond\" ; pub(crate)   graph A{ /// Mass.\n param m:kg * m ^ 2/s^ -1=-2*3 ,above 0;1 j[3] : rotation \
+         ;R r( w )=1e-3*w+tanh( w/0.1 )-( -w );a->j ->m; for i in 0 .. 3{ j->a [i-1] .hub; } }",
         "use \"a.bond\";
 pub(crate) graph A {
     /// Mass.

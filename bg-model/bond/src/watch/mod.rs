@@ -1,9 +1,9 @@
 //! The command `watch`: the report of a file in the browser, made anew whenever the file is saved.
 //!
 //! In: a file, options of `report`. Out: a page of a server on this machine; the newest report is in it, and above it
-//! what is wrong with the file now. Method: file times are looked at a hundred times a second, which sees a file that an
-//! editor replaces as it sees one that is written, on every system and in every folder. A report is made by a process
-//! of its own, which a later save ends.
+//! what is wrong with the file now. Method: file times are looked at a hundred times a second, which sees a file that
+//! an editor replaces as it sees one that is written, on every system and in every folder. A report is made by a
+//! process of its own, which a later save ends.
 
 mod changes;
 mod report;

@@ -63,8 +63,8 @@ fn least<const N: usize>(start: [f64; N], of: impl Fn([f64; N]) -> f64) -> ([f64
 const FREQUENCIES: [f64; 6] = [0.53, 0.58, 0.72, 0.85, 1.08, 1.16];
 const MASS_RATIO: f64 = 0.5;
 
-/// The amplitude of the mass, in parts of what the force's amplitude deflects its spring by (J. P. Den Hartog, Mechanical
-/// Vibrations, 4th edition (1956), section 3.3).
+/// The amplitude of the mass, in parts of what the force's amplitude deflects its spring by (J. P. Den Hartog,
+/// Mechanical Vibrations, 4th edition (1956), section 3.3).
 fn amplitude(frequency: f64, tuning: f64, damping: f64) -> f64 {
     let (g, f, mu) = (frequency, tuning, MASS_RATIO);
     let damped = (2.0 * damping * g * f).powi(2);
@@ -85,7 +85,8 @@ fn an_absorber_is_tuned_as_den_hartog_has_it() {
     for (n, g) in FREQUENCIES.iter().enumerate() {
         write!(
             text,
-            "1 main{n}: translation; I mass{n} = 1; C spring{n} = stiff; MSe force{n} = push * sin({g} * t / second); 0 gap{n};\n\
+            "1 main{n}: translation; I mass{n} = 1; C spring{n} = stiff; MSe force{n} = push * sin({g} * t / second); \
+            0 gap{n};\n\
              1 rel{n}: translation; C absorber_spring{n} = k; R absorber_damper{n} = c; 1 absorber{n}: translation;\n\
              I absorber_mass{n} = small;\n\
              force{n} -> main{n}; main{n} -> mass{n}; main{n} -> spring{n}; main{n} -> gap{n}; gap{n} -> rel{n};\n\
@@ -183,8 +184,8 @@ fn a_counterweight_balances_a_slider_crank() {
     assert!((goal(&found) - best).abs() < 1e-5 * best, "{}, by the closed form {best}", goal(&found));
 }
 
-/// Five points that the coupler is to pass at given crank angles (S. Kunjur, S. Krishnamurty, J. Appl. Mech. Robot. 4 (1997)
-/// 18).
+/// Five points that the coupler is to pass at given crank angles (S. Kunjur, S. Krishnamurty, J. Appl. Mech. Robot. 4
+/// (1997) 18).
 const POINTS: [(f64, [f64; 2]); 5] = [
     (PI / 6.0, [3.0, 3.0]),
     (PI / 4.0, [2.759, 3.363]),

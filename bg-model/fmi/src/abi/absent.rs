@@ -1,5 +1,6 @@
 //! What these units do not have: variables of other types than Float64, clocks that a host activates, scheduled
-//! execution, configuration, dependencies by call. The functions are there, since a library without one of them is none.
+//! execution, configuration, dependencies by call. The functions are there, since a library without one of them is
+//! none.
 
 use std::ffi::{c_char, c_void};
 
@@ -79,14 +80,16 @@ nothing! {
     fmi3SetBinary(_sizes: *const usize, _values: *const *const u8, _value_count: usize), "variables of the type Binary";
     fmi3SetClock(_values: *const bool), "clocks that a host activates";
     fmi3GetIntervalDecimal(_intervals: *mut f64, _qualifiers: *mut i32), "clocks with an interval";
-    fmi3GetIntervalFraction(_counters: *mut u64, _resolutions: *mut u64, _qualifiers: *mut i32), "clocks with an interval";
+    fmi3GetIntervalFraction(_counters: *mut u64, _resolutions: *mut u64, _qualifiers: *mut i32), "clocks with an \
+        interval";
     fmi3GetShiftDecimal(_shifts: *mut f64), "clocks with an interval";
     fmi3GetShiftFraction(_counters: *mut u64, _resolutions: *mut u64), "clocks with an interval";
     fmi3SetIntervalDecimal(_intervals: *const f64), "clocks with an interval";
     fmi3SetIntervalFraction(_counters: *const u64, _resolutions: *const u64), "clocks with an interval";
     fmi3SetShiftDecimal(_shifts: *const f64), "clocks with an interval";
     fmi3SetShiftFraction(_counters: *const u64, _resolutions: *const u64), "clocks with an interval";
-    fmi3GetOutputDerivatives(_orders: *const i32, _values: *mut f64, _value_count: usize), "derivatives of outputs with respect to time";
+    fmi3GetOutputDerivatives(_orders: *const i32, _values: *mut f64, _value_count: usize), "derivatives of outputs \
+        with respect to time";
 }
 
 /// A function that is for units of another kind.
@@ -109,7 +112,8 @@ refused! {
     fmi3GetNumberOfVariableDependencies(_dependent: u32, _count: *mut usize),
         "the dependencies are those of modelDescription.xml";
     fmi3GetVariableDependencies(
-        _dependent: u32, _elements: *mut usize, _independents: *mut u32, _of: *mut usize, _kinds: *mut i32, _count: usize
+        _dependent: u32, _elements: *mut usize, _independents: *mut u32, _of: *mut usize, _kinds: *mut i32,
+            _count: usize
     ), "the dependencies are those of modelDescription.xml";
 }
 

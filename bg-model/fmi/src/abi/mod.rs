@@ -167,8 +167,8 @@ pub unsafe fn instantiate(
         let model = found()?.into_iter().find(|model| description::token(model.described()) == token);
         let model = model.ok_or_else(|| {
             format!(
-                "this library has no model with the instantiation token {token}: its modelDescription.xml is of another build; \
-                 pack the unit again"
+                "this library has no model with the instantiation token {token}: its modelDescription.xml is of \
+                 another build; pack the unit again"
             )
         })?;
         let instance = Instance::new(model, interface);

@@ -56,8 +56,8 @@ impl Variables {
             rule: "bus",
             kind: "_bg-fmi_end".to_owned(),
             description: format!(
-                "Efforts and flows of {joint} at {point}, inertial axes: force times velocity and moment times angular velocity are the \
-                 power through this end"
+                "Efforts and flows of {joint} at {point}, inertial axes: force times velocity and moment times angular \
+                 velocity are the power through this end"
             ),
             members,
             inside: Vec::new(),

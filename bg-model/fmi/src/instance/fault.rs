@@ -69,7 +69,8 @@ pub enum Fault {
     Step(f64),
     /// A derivative that is not known.
     #[error(
-        "the derivative of `{unknown}` by `{known}` is not known; known are those of derivatives, outputs and guards by states and inputs"
+        "the derivative of `{unknown}` by `{known}` is not known; known are those of derivatives, outputs and guards \
+        by states and inputs"
     )]
     Derivative {
         /// What is derived.
@@ -82,8 +83,8 @@ pub enum Fault {
     Saved(String),
     /// A delay, whose past only the unit's own steps keep.
     #[error(
-        "`{0}` delays a signal, and what the signal was is kept by the unit's own steps: load the unit for Co-Simulation, and go on \
-         from a state in memory, not from bytes"
+        "`{0}` delays a signal, and what the signal was is kept by the unit's own steps: load the unit for \
+         Co-Simulation, and go on from a state in memory, not from bytes"
     )]
     Delays(&'static str),
     /// Something that this unit does not have.

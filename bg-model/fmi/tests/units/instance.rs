@@ -94,7 +94,8 @@ fn own<Me: Mechanism>(model: &Me, t: f64, rtol: f64, output: &str) -> f64 {
     run[output][0]
 }
 
-/// Model Exchange as a host does it, in steps `h` of the fourth-order method of Runge and Kutta; events are met by halving.
+/// Model Exchange as a host does it, in steps `h` of the fourth-order method of Runge and Kutta; events are met by
+/// halving.
 fn exchanged(instance: &mut Instance, t_end: f64, h: f64) -> u32 {
     let (n, g) = (instance.state_count(), instance.guard_count());
     let (mut t, mut x, mut guards, mut before) = (0.0, vec![0.0; n], vec![0.0; g], vec![0.0; g]);
@@ -356,7 +357,8 @@ fn derivatives_to_ten_digits<Me: Mechanism>(model: &'static dyn Exported, force:
     for known in (0..n).map(VariableKind::State).chain((0..d.inputs.len()).map(VariableKind::Input)) {
         let mut column = vec![0.0; unknowns.len()];
         instance.directional(&unknowns, &[reference(model, known)], &[1.0], &mut column).unwrap();
-        // Of a state a step whose square is beyond doubles; what depends on an input is a parabola, whose differences are exact.
+        // Of a state a step whose square is beyond doubles; what depends on an input is a parabola, whose differences
+        // are exact.
         let (h, [ahead, behind]) = match known {
             VariableKind::State(row) => (1e-10, [1e-10, -1e-10].map(|by| values(Some((row, by)), force))),
             _ => (0.5, [0.5, -0.5].map(|by| values(None, force + by))),
@@ -492,8 +494,8 @@ fn what_cannot_be_is_refused_in_words() {
     instance.set(&[length], &[1.0]).unwrap();
 }
 
-/// Of FMI 3.0 a clock that the unit activates tells at which events samples are computed: from the start of the event to
-/// its update.
+/// Of FMI 3.0 a clock that the unit activates tells at which events samples are computed: from the start of the event
+/// to its update.
 #[test]
 fn clocks_tick_where_samples_are_computed() {
     let text = model_description(&SAMPLED, &Packing::default());

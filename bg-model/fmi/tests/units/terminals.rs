@@ -1,4 +1,5 @@
-//! Terminals of units: what belongs together, in which sense values are shared and balanced, and whether hosts can read it.
+//! Terminals of units: what belongs together, in which sense values are shared and balanced, and whether hosts can read
+//! it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -31,7 +32,8 @@ bond_graph! {
         1 shaft: rotation; I rotor = 0.001; R bearing = 0.02; Se brake = load;
         supply -> armature -> winding; armature -> coil; armature -> constant -> shaft -> rotor; shaft -> bearing;
         shaft -> brake;
-        observe { current: A = armature.flow; speed: rad/s = shaft.flow; friction = bearing.effort; supplied: W = supplied_power }
+        observe { current: A = armature.flow; speed: rad/s = shaft.flow; friction = bearing.effort;
+            supplied: W = supplied_power }
     }
 }
 
@@ -53,11 +55,13 @@ bond_graph! {
     graph Arm {
         gravity [0, -9.81, 0];
         ground { point pivot = [0, 1, 0]; }
-        body rod { cuboid [0.6, 0.03, 0.03] density 7850; point end = [-0.3, 0, 0]; point tip = [0.3, 0, 0]; start end at [0, 1, 0]; }
+        body rod { cuboid [0.6, 0.03, 0.03] density 7850; point end = [-0.3, 0, 0]; point tip = [0.3, 0, 0];
+            start end at [0, 1, 0]; }
         body bob { cuboid [0.1, 0.1, 0.1] density 7850; start at [0.6, 1, 0]; }
         joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
         joint knot: spherical (rod.tip -> bob) { stiffness 1e6; damping 1e3; }
-        observe { C: m = rod.position; R = rod.orientation; angle: rad = rod.angle; depth: m = bob.position.y; force: N = pin.force }
+        observe { C: m = rod.position; R = rod.orientation; angle: rad = rod.angle; depth: m = bob.position.y;
+            force: N = pin.force }
     }
 }
 
@@ -70,7 +74,8 @@ bond_graph! {
         joint pin: revolute z (ground.pivot -> rod.end) { rigid; }
         drive motor on pin torque = torque;
         observe { speed: rad/s = pin.speed; again: rad/s = motor.flow; supplied: W = supplied_power; }
-        scene Watched { observe { speed: rad/s = pin.speed; R = rod.orientation; C: m = rod.position; } angles; expect planar; }
+        scene Watched { observe { speed: rad/s = pin.speed; R = rod.orientation; C: m = rod.position; } angles;
+            expect planar; }
     }
 }
 
@@ -100,10 +105,12 @@ bond_graph! {
         input torque: N*m;
         gravity [0, -9.81, 0];
         ground { point pivot = [0, 1, 0]; }
-        body thigh { cuboid [0.6, 0.03, 0.03] density 7850; point hip = [-0.3, 0, 0]; point knee = [0.3, 0, 0]; start hip at [0, 1, 0]; }
+        body thigh { cuboid [0.6, 0.03, 0.03] density 7850; point hip = [-0.3, 0, 0]; point knee = [0.3, 0, 0];
+            start hip at [0, 1, 0]; }
         body shank { cuboid [0.4, 0.03, 0.03] density 7850; point knee = [-0.2, 0, 0]; start at [0.8, 1, 0]; }
         joint pin: revolute z (ground.pivot -> thigh.hip) { rigid; }
-        joint knee: revolute z (thigh.knee -> shank.knee) { stiffness 1e6; damping 200; tilt stiffness 1e4; tilt damping 5; }
+        joint knee: revolute z (thigh.knee -> shank.knee) { stiffness 1e6; damping 200; tilt stiffness 1e4;
+            tilt damping 5; }
         drive motor on pin torque = torque;
         observe {
             F: N = pin.force; M: N*m = pin.moment; v: m/s = thigh.hip.velocity; w: rad/s = thigh.angular_velocity;

@@ -110,8 +110,8 @@ impl Compiler {
             if !self.balances {
                 let numbers: Vec<String> = moments.iter().map(|&moment| crate::number::number(moment)).collect();
                 let what = format!(
-                    "no body has the moments of inertia {}, of which one is larger than the others together: correct them, \
-                     or let balanceinertia=\"true\" of <compiler> replace them by their mean",
+                    "no body has the moments of inertia {}, of which one is larger than the others together: correct \
+                     them, or let balanceinertia=\"true\" of <compiler> replace them by their mean",
                     numbers.join(", ")
                 );
                 return Err(ImportError::Wrong { place: body.place.clone(), what });

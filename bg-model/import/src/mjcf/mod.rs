@@ -506,8 +506,8 @@ impl<'n> Reader<'n> {
             let sections: Vec<&Node> = root.children("actuator").collect();
             sections.iter().for_each(|section| section.mark_deep());
             if self.settings.actuators && sections.iter().any(|section| !section.children.is_empty()) {
-                let what = "The actuators are left out; each joint has an input of its own. With --actuators those that \
-                            act on joints are not.";
+                let what = "The actuators are left out; each joint has an input of its own. With --actuators those \
+                            that act on joints are not.";
                 self.robot.notes.push(what.to_owned());
             }
         }

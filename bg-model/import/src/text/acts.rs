@@ -17,7 +17,8 @@ impl Writer<'_> {
         let parent = &self.bodies[joint.parent];
         format!(
             "R {name}_bearing = {damping}; 1 {name}_twist[3]: rotation; 0 {name}_moment[3]: rotation;\n\
-             {name}_twist -> {name}_bearing; {name}_twist -> {name}_moment; {parent}.rotation -> {name}_moment -> {child}.rotation;\n"
+             {name}_twist -> {name}_bearing; {name}_twist -> {name}_moment; \
+             {parent}.rotation -> {name}_moment -> {child}.rotation;\n"
         )
     }
 

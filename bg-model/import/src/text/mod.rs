@@ -161,7 +161,8 @@ impl Writer<'_> {
         let body: Vec<String> =
             sections.iter().filter(|section| !section.is_empty()).map(|section| indented(&indented(section))).collect();
         format!(
-            "{}\nuse bg_model::bond_graph;\n\nbond_graph! {{\n    /// The robot `{}` of `{}`.\n    pub graph {graph} {{\n{}    }}\n}}\n",
+            "{}\nuse bg_model::bond_graph;\n\nbond_graph! {{\n    /// The robot `{}` of `{}`.\n    pub graph {graph} \
+            {{\n{}    }}\n}}\n",
             self.head(file),
             shown(&self.robot.name),
             shown(file),

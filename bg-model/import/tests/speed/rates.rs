@@ -1,4 +1,5 @@
-//! Times rates and Jacobians of imported robots, these with and without unknowns beside the states: the least of 40 rounds over 256 states.
+//! Times rates and Jacobians of imported robots, these with and without unknowns beside the states: the least of 40
+//! rounds over 256 states.
 
 mod panda;
 mod solo12;
@@ -54,7 +55,8 @@ fn time<Me: Mechanism>(name: &str) {
             std::hint::black_box(robot.sparsity().matrix(start.len(), &entries));
         }
     });
-    println!("{name}: rate {rate:.0} ns, Jacobian {jacobian:.0} ns, with its unknowns eliminated densely {whole:.0} ns");
+    println!("{name}: rate {rate:.0} ns, Jacobian {jacobian:.0} ns, with its unknowns eliminated densely {whole:.0} \
+        ns");
 }
 
 fn main() {

@@ -47,7 +47,8 @@ fn actuators_are_drives_on_request() {
             "<position name='servo' joint='pin' kp='20' kv='2' gear='3' forcerange='-4 4'/>",
             vec![
                 "let servo_effort: N*m = 20 * servo - 60 * pin.angle - 6 * pin.spin.flow;",
-                "drive servo_drive on pin torque = 3 * (if servo_effort > 4 { 4 } else if servo_effort < -4 { -4 } else { servo_effort });",
+                "drive servo_drive on pin torque = 3 * (if servo_effort > 4 { 4 } else if servo_effort < -4 { -4 } \
+                else { servo_effort });",
             ],
         ),
         (
@@ -68,9 +69,8 @@ fn actuators_are_drives_on_request() {
     let muscle = made(&actuators("<muscle name='m' joint='pin'/>"));
     assert_eq!(
         muscle.notes,
-        [
-            "line 5: the actuator `m` is left out: a muscle has a state of its own and a force by curves of its length and speed."
-        ]
+        ["line 5: the actuator `m` is left out: a muscle has a state of its own and a force by curves of its length \
+            and speed."]
     );
     // What is said of a joint's motor in a URDF.
     let text = arm(MASS, "continuous", "<limit effort='5'/>");

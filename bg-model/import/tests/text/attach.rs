@@ -22,10 +22,10 @@ const CHILD: &str = "<mujoco model='child'><compiler angle='radian' boundmass='1
 /// A body with what is attached to it, in a file beside the model.
 fn made(name: &str, child: &str, inner: &str) -> Result<Imported, String> {
     let main = format!(
-        "<mujoco><default><joint damping='5' armature='9'/><default class='z'><joint stiffness='4'/></default></default>\
-         <asset><model name='c' file='parts/child.xml'/></asset><worldbody>\n\
-         <body name='base' childclass='z' pos='0 0 2'><joint name='b' range='-90 90'/><geom size='0.1' mass='1'/>{inner}</body>\
-         </worldbody></mujoco>"
+        "<mujoco><default><joint damping='5' armature='9'/><default class='z'><joint \
+         stiffness='4'/></default></default><asset><model name='c' file='parts/child.xml'/></asset><worldbody>\n\
+         <body name='base' childclass='z' pos='0 0 2'><joint name='b' range='-90 90'/><geom size='0.1' \
+         mass='1'/>{inner}</body></worldbody></mujoco>"
     );
     let folder = folder(name, &[("main.xml", main.as_bytes()), ("parts/child.xml", child.as_bytes())]);
     import_file(Format::Mjcf, &folder.join("main.xml"), ASKED).map_err(|fault| fault.to_string())
@@ -125,9 +125,10 @@ fn paths_count_from_the_folder_of_the_model() {
     };
     let main = "<mujoco><asset><model name='c' file='sub/child.xml'/></asset><worldbody><body name='base'>\
                 <attach model='c' body='arm' prefix='p_'/></body></worldbody></mujoco>";
-    let child = "<mujoco model='child'><compiler meshdir='mesh'/><asset><mesh file='b.obj'/><model file='grand.xml'/></asset>\
-                 <worldbody><body name='arm'><joint name='j'/><geom type='mesh' mesh='b' density='6'/>\
-                 <attach model='g' body='leaf' prefix='g_'/></body></worldbody><include file='inc.xml'/></mujoco>";
+    let child = "<mujoco model='child'><compiler meshdir='mesh'/><asset><mesh file='b.obj'/><model \
+                 file='grand.xml'/></asset><worldbody><body name='arm'><joint name='j'/><geom type='mesh' mesh='b' \
+                 density='6'/><attach model='g' body='leaf' prefix='g_'/></body></worldbody><include \
+                 file='inc.xml'/></mujoco>";
     let grand = "<mujoco model='g'><worldbody><body name='leaf'><joint name='l'/><geom size='0.1'/></body></worldbody>\
                  <actuator><motor name='m' joint='l'/></actuator></mujoco>";
     let include = "<mujocoinclude><actuator><motor name='n' joint='j'/></actuator></mujocoinclude>";
@@ -152,8 +153,8 @@ fn what_names_copies_follows_them() {
         format!(
             "<mujoco><worldbody><body name='out'><joint name='jo'/><geom size='0.1'/></body>\
              <replicate count='2' offset='1 0 0'><body name='x'><joint name='j'/><geom size='0.1'/>\
-             <replicate count='2' offset='0 1 0' sep='-'><body name='y'><joint name='jy'/><geom size='0.1'/></body></replicate>\
-             </body></replicate></worldbody>\n{rest}</mujoco>"
+             <replicate count='2' offset='0 1 0' sep='-'><body name='y'><joint name='jy'/><geom \
+             size='0.1'/></body></replicate></body></replicate></worldbody>\n{rest}</mujoco>"
         )
     };
     let import = |rest: &str| import(Format::Mjcf, "r.xml", &text(rest), ASKED).expect("a robot");

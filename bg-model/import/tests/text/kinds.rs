@@ -65,7 +65,8 @@ fn what_is_not_used_is_a_note_with_its_line() {
         ),
         (
             arm(MASS, "continuous", "<limit effort='5'/>"),
-            "line 4: `effort` of <limit> is not used: what drives a joint may give any effort; with --actuators it is limited.",
+            "line 4: `effort` of <limit> is not used: what drives a joint may give any effort; \
+            with --actuators it is limited.",
         ),
         (
             arm(MASS, "continuous", "<limit velocity='5'/>"),
@@ -92,9 +93,10 @@ fn what_is_not_used_is_a_note_with_its_line() {
 
 #[test]
 fn what_changes_no_motion_is_no_note() {
-    let head = "<visual><map znear='1'/></visual><statistic extent='1'/><size nconmax='3'/><option timestep='0.1' solver='PGS'/>\
-                <asset><material name='m'/><texture name='t'/></asset><sensor><jointpos joint='pin'/></sensor>\
-                <keyframe><key name='k' qpos='1'/></keyframe><custom><numeric name='n' data='1'/></custom>";
+    let head = "<visual><map znear='1'/></visual><statistic extent='1'/><size nconmax='3'/><option timestep='0.1' \
+                solver='PGS'/><asset><material name='m'/><texture name='t'/></asset><sensor><jointpos \
+                joint='pin'/></sensor><keyframe><key name='k' qpos='1'/></keyframe><custom><numeric name='n' \
+                data='1'/></custom>";
     let inner =
         "<camera name='c'/><light pos='0 0 1'/><site name='s'/><geom name='g' size='0.1' rgba='1 0 0 1' friction='1'/>";
     let text = rod(head, "", "damping='0' range='0 0' user='1 2' group='2'")
@@ -192,9 +194,8 @@ fn a_fluid_brakes_the_box_of_each_body() {
     let round = shapes("<option density='1'/>", "<geom size='0.1'/><geom size='0.1' pos='1 0 0'/>");
     assert_eq!(
         made(&round).notes,
-        [
-            "The fluid around body `b` brakes along axes that MuJoCo may choose otherwise, since two of its moments are equal."
-        ]
+        ["The fluid around body `b` brakes along axes that MuJoCo may choose otherwise, since two of its moments \
+            are equal."]
     );
     let ellipsoid = shapes("<option density='1'/>", "<geom size='0.1' fluidshape='ellipsoid'/>");
     assert_eq!(
@@ -242,8 +243,8 @@ fn springs_and_dampers_are_mujocos() {
     has(
         &rod("", "", "stiffness='20 3 100' damping='2 0 5'"),
         &[
-            "C pin_spring(q) = 20 * q + 3 * q * abs(q) + 100 * pow(q, 3) start pin_start energy 20 * pow(q, 2) / 2 + 3 * abs(pow(q, 3)) / 3 \
-             + 100 * pow(q, 4) / 4;",
+            "C pin_spring(q) = 20 * q + 3 * q * abs(q) + 100 * pow(q, 3) start pin_start energy 20 * pow(q, 2) / 2 + 3 \
+             * abs(pow(q, 3)) / 3 + 100 * pow(q, 4) / 4;",
             "R pin_bearing(w) = 2 * w + 5 * pow(w, 3);",
         ],
         &[],
@@ -275,13 +276,13 @@ fn springs_and_dampers_are_mujocos() {
 #[test]
 fn springs_by_time_constants_feel_the_whole_mechanism() {
     let chain = "<body name='tip' pos='0.6 0 0' euler='0 0 40'>\
-        <joint name='hook' axis='1 1 0' pos='0 0.1 0' springdamper='0.1 2'/><joint name='draw' type='slide' axis='0 1 1'/>\
-        <inertial pos='0.1 0.2 0' mass='1' diaginertia='0.02 0.03 0.04'/></body></body>";
+        <joint name='hook' axis='1 1 0' pos='0 0.1 0' springdamper='0.1 2'/><joint name='draw' type='slide' axis='0 1 \
+        1'/><inertial pos='0.1 0.2 0' mass='1' diaginertia='0.02 0.03 0.04'/></body></body>";
     let floating = |kind: &str| {
         format!(
-            "<body name='ball' pos='3 0 0'><joint name='b' type='{kind}'/><inertial pos='0 0.1 0' mass='2' diaginertia='0.02 0.03 0.04'/>\
-             <body name='arm' pos='1 0 0'><joint name='w' axis='0 1 0' springdamper='0.1 1'/>\
-             <inertial pos='0.1 0.2 0' mass='1' diaginertia='0.02 0.03 0.04'/></body></body></worldbody>"
+            "<body name='ball' pos='3 0 0'><joint name='b' type='{kind}'/><inertial pos='0 0.1 0' mass='2' \
+             diaginertia='0.02 0.03 0.04'/><body name='arm' pos='1 0 0'><joint name='w' axis='0 1 0' springdamper='0.1 \
+             1'/><inertial pos='0.1 0.2 0' mass='1' diaginertia='0.02 0.03 0.04'/></body></body></worldbody>"
         )
     };
     for (kind, stiffness) in [("ball", 2.427_480_916_030_542_6), ("free", 2.423_954_372_623_582_4)] {
@@ -308,9 +309,9 @@ fn springs_by_time_constants_feel_the_whole_mechanism() {
 #[test]
 fn joints_that_follow_others_are_rigid_rows() {
     let mimic = "<robot name='r'><link name='a'/><link name='b'>MASS</link><link name='c'>MASS</link>\
-                 <joint name='left' type='prismatic'><parent link='a'/><child link='b'/><limit lower='0' upper='1'/></joint>\
-                 <joint name='right' type='prismatic'><parent link='a'/><child link='c'/><limit lower='-1' upper='0'/>\
-                 <mimic joint='left' multiplier='-2' offset='0.25'/></joint></robot>"
+                 <joint name='left' type='prismatic'><parent link='a'/><child link='b'/><limit lower='0' \
+                 upper='1'/></joint><joint name='right' type='prismatic'><parent link='a'/><child link='c'/><limit \
+                 lower='-1' upper='0'/><mimic joint='left' multiplier='-2' offset='0.25'/></joint></robot>"
         .replace("MASS", MASS);
     has(
         &mimic,
@@ -349,8 +350,8 @@ fn a_loop_joint_of_a_urdf_closes_a_loop() {
     );
     has(&text, &["joint tie: revolute z (ground.tie -> b.tie) {"], &[]);
     let open = made(&text.replace("link2 link='b' xyz='0.1 0 0'", "link2 link='b' xyz='0.1 0 0.25'"));
-    let note = "Loop `tie` is open at the start, by 0.25 m or by an angle: make starts of its joints guesses, or give them values \
-                that close it.";
+    let note = "Loop `tie` is open at the start, by 0.25 m or by an angle: make starts of its joints guesses, or give \
+                them values that close it.";
     assert_eq!(open.notes, [note]);
     // What is open is a part of the machine.
     for size in [1e-9, 1e9] {
@@ -430,7 +431,10 @@ fn moments_of_thin_rods_stay_as_they_are() {
     let rotor = "<inertial><origin xyz='0.2 0 0'/><mass value='0'/><inertia ixx='0.5' iyy='0.5' izz='0.5'/></inertial>";
     let text = arm(rotor, "continuous", "").replace(
         "</robot>",
-        &format!("<link name='c'>{MASS}</link><joint name='k' type='continuous'><parent link='b'/><child link='c'/></joint></robot>"),
+        &format!(
+            "<link name='c'>{MASS}</link><joint name='k' type='continuous'><parent link='b'/><child \
+            link='c'/></joint></robot>"
+        ),
     );
     let imported = made(&text);
     assert!(
@@ -460,9 +464,9 @@ fn hinges_in_a_row_are_one_joint_only_where_nothing_is_on_them() {
 
 #[test]
 fn frames_and_copies_are_written_out() {
-    let text = "<mujoco><worldbody><frame pos='1 0 0' euler='0 0 90'><frame pos='1 0 0'><body name='q' pos='1 0 0'><joint name='a'/>\
-                <frame pos='0 0 1'><geom type='capsule' fromto='0 0 0 1 0 0' size='.1'/><joint name='l' axis='1 0 0' pos='0 1 0'/>\
-                </frame></body></frame></frame></worldbody></mujoco>";
+    let text = "<mujoco><worldbody><frame pos='1 0 0' euler='0 0 90'><frame pos='1 0 0'><body name='q' pos='1 0 \
+                0'><joint name='a'/><frame pos='0 0 1'><geom type='capsule' fromto='0 0 0 1 0 0' size='.1'/><joint \
+                name='l' axis='1 0 0' pos='0 1 0'/></frame></body></frame></frame></worldbody></mujoco>";
     let imported = made(text);
     // MuJoCo 4.0: the body at (1, 2, 0), its second joint at (0, 1, 1), its mass at (0.5, 0, 1).
     for words in [
@@ -472,8 +476,8 @@ fn frames_and_copies_are_written_out() {
     ] {
         assert!(imported.text.contains(words), "no {words} in\n{}", imported.text);
     }
-    let text = "<mujoco><worldbody><replicate count='3' offset='1 0 0' euler='0 0 30'><body name='b' pos='0 1 0'><joint name='j'/>\
-                <geom size='.1'/></body></replicate></worldbody></mujoco>";
+    let text = "<mujoco><worldbody><replicate count='3' offset='1 0 0' euler='0 0 30'><body name='b' pos='0 1 \
+                0'><joint name='j'/><geom size='.1'/></body></replicate></worldbody></mujoco>";
     has(
         text,
         &[
@@ -505,8 +509,8 @@ fn what_mujoco_refuses_is_refused_with_its_line() {
         ),
         (
             shapes("", "\n<inertial pos='0 0 0' mass='1' diaginertia='1 1 3'/>"),
-            "line 2: no body has the moments of inertia 1, 1, 3, of which one is larger than the others together: correct them, or let \
-             balanceinertia=\"true\" of <compiler> replace them by their mean",
+            "line 2: no body has the moments of inertia 1, 1, 3, of which one is larger than the others together: \
+             correct them, or let balanceinertia=\"true\" of <compiler> replace them by their mean",
         ),
         (
             rod("<compiler eulerseq='xy'/>", "", ""),
@@ -518,7 +522,8 @@ fn what_mujoco_refuses_is_refused_with_its_line() {
         ),
         (
             rod("<compiler coordinate='global'/>", "", ""),
-            "line 1: `coordinate` of <compiler> is \"global\": it must be local: let MuJoCo 2.3.3 or older write the file anew",
+            "line 1: `coordinate` of <compiler> is \"global\": it must be local: let MuJoCo 2.3.3 or older write the \
+            file anew",
         ),
         (
             rod("<option><flag gravity='off'/></option>", "", ""),

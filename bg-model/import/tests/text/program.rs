@@ -34,8 +34,8 @@ fn strict_writes_nothing_where_there_is_a_note() {
     let folder = folder("strict", &[("a.xml", PENDULUM.as_bytes())]);
     let output = run(&folder, &["mjcf", "a.xml", "-o", "a.rs", "--strict"]);
     assert_eq!(output.status.code(), Some(1));
-    let message = "error: a.xml: not all of the file can be kept, so nothing is written:\n  line 1: `magic` of <option> is \
-                   not used.\n";
+    let message = "error: a.xml: not all of the file can be kept, so nothing is written:\n  line 1: `magic` of \
+                   <option> is not used.\n";
     assert_eq!(told(&output), message);
     assert!(!folder.join("a.rs").exists());
     let output = run(&folder, &["mjcf", "a.xml", "-o", "a.rs"]);
@@ -45,12 +45,13 @@ fn strict_writes_nothing_where_there_is_a_note() {
 
 #[test]
 fn other_encodings_included_files_and_meshes_are_read() {
-    let latin = b"<?xml version='1.0' encoding='ISO-8859-1'?><robot name='\xe9paule'><link name='a'/><link name='b'><inertial>\
-                  <mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link><joint name='j' type='continuous'>\
-                  <parent link='a'/><child link='b'/></joint></robot>";
-    let main = "<mujoco><compiler meshdir='shapes'/><asset><mesh file='block.stl'/></asset>\n<include file='parts/rod.xml'/></mujoco>";
-    let rod = "<mujocoinclude>\n<worldbody><body name='rod' colour='red'><joint name='pin'/>\n<geom type='mesh' mesh='block' density='6'/>\
-               </body></worldbody></mujocoinclude>";
+    let latin = b"<?xml version='1.0' encoding='ISO-8859-1'?><robot name='\xe9paule'><link name='a'/><link \
+                  name='b'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1'/></inertial></link><joint \
+                  name='j' type='continuous'><parent link='a'/><child link='b'/></joint></robot>";
+    let main = "<mujoco><compiler meshdir='shapes'/><asset><mesh file='block.stl'/></asset>\n<include \
+        file='parts/rod.xml'/></mujoco>";
+    let rod = "<mujocoinclude>\n<worldbody><body name='rod' colour='red'><joint name='pin'/>\n<geom type='mesh' \
+               mesh='block' density='6'/></body></worldbody></mujocoinclude>";
     let corner = |k: usize| ["0 0 0", "1 0 0", "0 1 0", "0 0 1"][k];
     let face = |[a, b, c]: [usize; 3]| {
         let corners = [a, b, c].map(|k| format!("vertex {}\n", corner(k))).concat();

@@ -7,8 +7,8 @@ use super::{MASS, compiles};
 /// A pendulum of these names.
 fn named(robot: &str, link: &str, joint: &str) -> String {
     format!(
-        "<robot name='{robot}'><link name='a'/><link name='{link}'>{MASS}</link><joint name='{joint}' type='continuous'>\
-         <parent link='a'/><child link='{link}'/></joint></robot>"
+        "<robot name='{robot}'><link name='a'/><link name='{link}'>{MASS}</link><joint name='{joint}' \
+         type='continuous'><parent link='a'/><child link='{link}'/></joint></robot>"
     )
 }
 
@@ -32,8 +32,8 @@ fn names_that_break_lines_or_are_words_of_rust_stay_names() {
 fn names_that_are_made_of_others_are_no_others() {
     let joint = |name: &str, parent: &str, child: &str| {
         format!(
-            "<link name='{child}'>{MASS}</link><joint name='{name}' type='revolute'><parent link='{parent}'/><child link='{child}'/>\
-             <limit lower='-1' upper='1'/><dynamics damping='1' friction='1'/></joint>"
+            "<link name='{child}'>{MASS}</link><joint name='{name}' type='revolute'><parent link='{parent}'/><child \
+             link='{child}'/><limit lower='-1' upper='1'/><dynamics damping='1' friction='1'/></joint>"
         )
     };
     let pieces = [
@@ -59,8 +59,8 @@ fn refused(text: &str) -> ImportError {
 fn numbers_of_any_size_become_a_graph_or_an_error() {
     let body = |body: &str, inner: &str| {
         format!(
-            "<mujoco><worldbody><body name='b' {body}><joint name='j' axis='0 1 0'/><geom type='box' size='0.1 0.2 0.3'/>{inner}\
-             </body></worldbody></mujoco>"
+            "<mujoco><worldbody><body name='b' {body}><joint name='j' axis='0 1 0'/><geom type='box' size='0.1 0.2 \
+             0.3'/>{inner}</body></worldbody></mujoco>"
         )
     };
     let quaternion =
@@ -86,8 +86,8 @@ fn numbers_of_any_size_become_a_graph_or_an_error() {
 
 #[test]
 fn a_robot_in_which_nothing_moves_is_refused() {
-    let message = "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not fixed, or take \
-                   --free-base for a URDF whose root moves";
+    let message = "nothing moves: no joint carries a link with mass; give the links a mass and a joint that is not \
+                   fixed, or take --free-base for a URDF whose root moves";
     for text in [
         "<robot name='r'><link name='a'/></robot>".to_owned(),
         named("r", "b", "j").replace("continuous", "fixed"),

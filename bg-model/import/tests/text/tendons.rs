@@ -10,9 +10,11 @@ const ASKED: Options = Options { actuators: true, ..NO_CONTACTS };
 /// A slide that carries a hinge, and a tendon of twice the one less the other.
 fn robot(tendon: &str, rest: &str) -> String {
     format!(
-        "<mujoco><worldbody><body name='cart'><joint name='j' type='slide' axis='1 0 0' ref='0.5'/><geom size='0.1' mass='2'/>\
-         <body name='rod'><joint name='k' axis='0 1 0'/><geom size='0.1' mass='2' pos='0.3 0 0'/></body></body></worldbody>\n\
-         <tendon><fixed name='cord' {tendon}><joint joint='j' coef='2'/><joint joint='k' coef='-1'/></fixed></tendon>{rest}</mujoco>"
+        "<mujoco><worldbody><body name='cart'><joint name='j' type='slide' axis='1 0 0' ref='0.5'/><geom size='0.1' \
+         mass='2'/><body name='rod'><joint name='k' axis='0 1 0'/><geom size='0.1' mass='2' pos='0.3 0 \
+         0'/></body></body></worldbody>\n\
+         <tendon><fixed name='cord' {tendon}><joint joint='j' coef='2'/><joint joint='k' \
+         coef='-1'/></fixed></tendon>{rest}</mujoco>"
     )
 }
 
@@ -54,7 +56,8 @@ fn a_spring_and_a_damper_are_on_the_sum_of_the_flows() {
 #[test]
 fn slack_friction_and_limits_are_on_the_same_flow() {
     let slack = "C cord_spring(q) = if q > 0.5 { 10 * (q - 0.5) } else if q < 0 { 10 * q } else { 0 } start cord_start \
-                 energy if q > 0.5 { 10 * pow(q - 0.5, 2) / 2 } else if q < 0 { 10 * pow(q, 2) / 2 } else { 0 }; cord_pull";
+                 energy if q > 0.5 { 10 * pow(q - 0.5, 2) / 2 } else if q < 0 { 10 * pow(q, 2) / 2 } else { 0 }; \
+                 cord_pull";
     has(&robot("stiffness='10' springlength='1 1.5'", ""), &[slack], &[]);
     let words = [
         "friction cord_friction on cord_pull { coulomb 4; viscous 3; }",
@@ -109,7 +112,8 @@ fn an_equality_of_tendons_lets_one_of_two_joints_follow() {
     let class = linear.replace("<worldbody>", "<default><tendon stiffness='4'/></default><worldbody>");
     has(&class, &["let j_start: m = 6.5 * k_start;"], &[]);
     let one = asked(&second(hinge, "tendon1='b'")).expect("a robot");
-    let note = "The equality `e` of the kind `tendon` is left out: two joints can follow each other here, and it ties other numbers of them.";
+    let note = "The equality `e` of the kind `tendon` is left out: two joints can follow each other here, and it ties \
+        other numbers of them.";
     assert_eq!(one.notes, [note]);
     assert_eq!(
         asked(&second(hinge, "tendon1='x'")).expect_err("it is not there"),

@@ -11,8 +11,8 @@ use bg_expressions::schedule::{self, Assignment, Counts, Operation, Routine};
 
 use crate::program::{Operand, Pairing, Program};
 
-/// A program in steps. [`Operand::Value`] is the number of a step; an operand that is a pair is one of a step that gives
-/// a pair, or the first of two neighbours.
+/// A program in steps. [`Operand::Value`] is the number of a step; an operand that is a pair is one of a step that
+/// gives a pair, or the first of two neighbours.
 #[derive(Debug, Default)]
 pub struct Steps {
     /// Each comes after what it takes.

@@ -1,7 +1,7 @@
 //! Impacts on stops: how the state jumps where something hits one.
 //!
-//! In: a system with stops ([`Impacts`](crate::model::capability::Impacts)), the state before, the stops that are reached. Out: the state after, and how
-//! each stop comes out of it.
+//! In: a system with stops ([`Impacts`](crate::model::capability::Impacts)), the state before, the stops that are
+//! reached. Out: the state after, and how each stop comes out of it.
 //!
 //! Newton's law: a flow v towards a stop becomes -e v, or leaves faster. Impulses L of the stops, which do not pull,
 //! and of the rigid joints, whose flows stay zero, change the flows by A L, with A = -J M^-1 J^T of all of them. Which

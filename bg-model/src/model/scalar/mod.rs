@@ -129,9 +129,9 @@ pub enum KnownAs {
     Other,
 }
 
-/// Of what this crate compiles for the numbers that it knows, a static for doubles, double-doubles and gradients each, that
-/// of the numbers `$scalar`, which is a `$kind`; for other numbers `$other`, compiled with the caller. Only one branch is
-/// ever compiled: each asks a constant.
+/// Of what this crate compiles for the numbers that it knows, a static for doubles, double-doubles and gradients each,
+/// that of the numbers `$scalar`, which is a `$kind`; for other numbers `$other`, compiled with the caller. Only one
+/// branch is ever compiled: each asks a constant.
 macro_rules! compiled_for {
     ($scalar:ty => $kind:ty, [$doubles:expr, $double_doubles:expr, $gradients:expr], $other:expr) => {{
         use $crate::model::scalar::{KnownAs, Scalar, known};

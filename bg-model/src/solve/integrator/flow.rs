@@ -97,8 +97,8 @@ impl<'a> Flow<'a> {
         self.system.factors()
     }
 
-    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it did:
-    /// not where a pivot is too small, or there is no elimination.
+    /// Writes the factors of I - `c` J into `factors`; `entries` is J in the order of its sparsity. Gives whether it
+    /// did: not where a pivot is too small, or there is no elimination.
     pub fn eliminate(&self, c: f64, entries: &[f64], factors: &mut [f64]) -> bool {
         self.system.eliminate(c, entries, factors)
     }
@@ -130,8 +130,8 @@ impl<'a> Flow<'a> {
         self.system.second_derivatives(x, dx);
     }
 
-    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their second
-    /// derivatives.
+    /// Writes the rates at time `t` (s) and state `x` into `dx`, in the places of the states of second order their
+    /// second derivatives.
     pub fn forces(&self, t: f64, x: &[f64], dx: &mut [f64]) {
         count(self.counters.rates, 1);
         self.system.forces(t, x, self.negative, dx);
@@ -149,8 +149,8 @@ impl<'a> Flow<'a> {
         self.system.series()
     }
 
-    /// Writes the Taylor series of the states from time `t` (s) on: order by order, of each all states. Those of order 0
-    /// are the state there; those of order k become the coefficients of the k-th power of the time passed in parts of
+    /// Writes the Taylor series of the states from time `t` (s) on: order by order, of each all states. Those of order
+    /// 0 are the state there; those of order k become the coefficients of the k-th power of the time passed in parts of
     /// `h` (s). `rows` is work space, of as many numbers for each order but the first as the series is wide.
     pub fn expand(&self, t: f64, h: f64, rows: &mut [f64], series: &mut [f64]) {
         if !series.is_empty() {
@@ -165,7 +165,8 @@ impl<'a> Flow<'a> {
         self.system.held().is_some()
     }
 
-    /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small pivot.
+    /// Counts a factorisation of I - c J; `is_fallback` where a dense one stands in for a sparse one with a small
+    /// pivot.
     pub fn count_factorisation(&self, is_fallback: bool) {
         count(self.counters.factorisations, 1);
         count(self.counters.pivoted, u64::from(is_fallback));

@@ -174,9 +174,9 @@ pub trait Method {
     /// Not a number where a stage is not; infinity where an iteration does not converge, which calls for half the step.
     fn attempt(&mut self, flow: &Flow<'_>, start: PointRef<'_>, h: f64, scale: &Scale, end: &mut [f64]) -> f64;
 
-    /// The norm of the last attempt's error by one estimate alone, of a method that makes a smaller norm of two; else 0.
-    /// How two fall together is right where the terms of their orders are there. At a start they may not be: from rest
-    /// positions are even functions of the time, momenta odd ones, and of each every other term vanishes.
+    /// The norm of the last attempt's error by one estimate alone, of a method that makes a smaller norm of two; else
+    /// 0. How two fall together is right where the terms of their orders are there. At a start they may not be: from
+    /// rest positions are even functions of the time, momenta odd ones, and of each every other term vanishes.
     fn error_alone(&self) -> f64 {
         0.0
     }

@@ -10,8 +10,8 @@ pub struct Request {
     /// The integrator.
     pub method: Integrator,
     /// The method that `auto` begins with, without trials: what made most of the steps of a run like this
-    /// ([`Trajectory::hint`](super::Trajectory::hint)). Others take over where they are ahead later on. Without effect on
-    /// other integrators.
+    /// ([`Trajectory::hint`](super::Trajectory::hint)). Others take over where they are ahead later on. Without effect
+    /// on other integrators.
     pub hint: Option<Integrator>,
     /// The step of a fixed-step method, s; without effect on others.
     pub fixed_step: f64,

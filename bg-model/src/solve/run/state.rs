@@ -57,8 +57,8 @@ pub enum StateError {
     OtherStates(String),
     /// It was saved in another format.
     #[error(
-        "this state was saved in format {found}, which does not say what sticks or rests; this version reads format {expected}: \
-         make the run that led to it anew",
+        "this state was saved in format {found}, which does not say what sticks or rests; \
+         this version reads format {expected}: make the run that led to it anew",
         expected = State::FORMAT
     )]
     OtherFormat {

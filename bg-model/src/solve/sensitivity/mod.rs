@@ -1,7 +1,7 @@
 //! Derivatives of a run by parameters and start values, exact to the accuracy of the run, through events.
 //!
-//! In: a model, a [`Mechanism`] for one, what is asked of a run, directions. Out: the run, with the derivative of each output at each
-//! sample along each direction. Method: the model calculates with numbers that have slopes
+//! In: a model, a [`Mechanism`] for one, what is asked of a run, directions. Out: the run, with the derivative of each
+//! output at each sample along each direction. Method: the model calculates with numbers that have slopes
 //! ([`Gradient`](crate::scalar::Gradient)), beside the run itself, whose steps, events and bytes are those without
 //! derivatives. The start pose, the rates, projections, guards, impacts and outputs are all differentiated; at events
 //! the slopes jump (`jump`).
@@ -64,8 +64,8 @@ use follow::Follower;
 use step::Stepper;
 
 /// What is to be done where a model delays signals.
-const DELAYS: &str = "what a run depends on then has a past of its own, which derivatives along a run do not have; take \
-                      differences of runs, or delay samples in a block `every`";
+const DELAYS: &str = "what a run depends on then has a past of its own, which derivatives along a run do not have; \
+                      take differences of runs, or delay samples in a block `every`";
 
 /// What a run is differentiated by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,7 +170,8 @@ pub enum SensitivityError {
     Run(#[from] RunError),
     /// Something lies on a stop at the start.
     #[error(
-        "something hits a stop at the start of the run, where its derivatives do not exist; start a little beside the stop"
+        "something hits a stop at the start of the run, where its derivatives do not exist; \
+        start a little beside the stop"
     )]
     ImpactAtStart,
     /// A guard touches zero and turns back: how the instant depends on parameters is not defined.
@@ -207,7 +208,8 @@ pub enum SensitivityError {
     },
     /// There is no reverse sweep of the model.
     #[error(
-        "there is no reverse sweep of `{model}`, whose rate has more than 400 operations; ask for its derivatives along each direction"
+        "there is no reverse sweep of `{model}`, whose rate has more than 400 operations; \
+        ask for its derivatives along each direction"
     )]
     NoReverseSweep {
         /// The model.

@@ -2,11 +2,11 @@
 //!
 //! In: the start of a step that a run has made, a rate that takes numbers with slopes. Out: the state at its end, with
 //! slopes. Method: DOP853 on the state with its slopes, which is the same method on S' = J S + df/dp with the exact J
-//! and df/dp of every stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is, but for
-//! a state at rest: its steps grow until they are unstable, which leaves it at rest but not its slopes. A step of DOP853 in
-//! which slopes lose half of their digits is divided into equal parts; one of another method is until the estimated error of
-//! the slopes is what is allowed: for a change of the direction by its whole size, what is allowed of the state (as in A. C.
-//! Hindmarsh and others, SUNDIALS, ACM TOMS 31 (2005), section 2.6).
+//! and df/dp of every stage: of a run by DOP853 the exact derivative of its steps, which is as exact as the run is, but
+//! for a state at rest: its steps grow until they are unstable, which leaves it at rest but not its slopes. A step of
+//! DOP853 in which slopes lose half of their digits is divided into equal parts; one of another method is until the
+//! estimated error of the slopes is what is allowed: for a change of the direction by its whole size, what is allowed
+//! of the state (as in A. C. Hindmarsh and others, SUNDIALS, ACM TOMS 31 (2005), section 2.6).
 //!
 //! A step has vectors of its own: those of the machine, in which nothing else is calculated, and it keeps the state in
 //! them from step to step. All around it is [`Gradient`]. It is compiled once for each kind of vectors, whatever the
@@ -87,8 +87,8 @@ struct Stages<V> {
 }
 
 impl<V: Slopes> Stepper<V> {
-    /// Steps of this system of so many states; `is_own`: of a run by DOP853. The error of slopes is measured with the scale of
-    /// the states and the size of each direction.
+    /// Steps of this system of so many states; `is_own`: of a run by DOP853. The error of slopes is measured with the
+    /// scale of the states and the size of each direction.
     pub fn new(system: Box<dyn Rates<V>>, states: usize, is_own: bool, (scale, of_each): (Scale, &[f64])) -> Self {
         let nothing = vec![GradientIn::from_f64(0.0); states];
         let none = [V::filled(0.0); STAGES];
@@ -250,9 +250,9 @@ impl<V: Slopes> Work<V> {
         nothing.numbers().as_ref().iter().all(|&number| number == 0.0)
     }
 
-    /// The norm of the slopes' error, above 1 where a step is to be divided. Of another method's steps the difference to
-    /// DOP853's embedded method of order 5: together with that to order 3, as of a run's own steps, it says a hundred times
-    /// too little where a joint rings. Of DOP853's own steps both, where they take half of the digits.
+    /// The norm of the slopes' error, above 1 where a step is to be divided. Of another method's steps the difference
+    /// to DOP853's embedded method of order 5: together with that to order 3, as of a run's own steps, it says a
+    /// hundred times too little where a joint rings. Of DOP853's own steps both, where they take half of the digits.
     #[inline(always)]
     fn error(&self, h: f64, end: &[GradientIn<V>]) -> f64 {
         let none = self.sizes.alike(0.0);

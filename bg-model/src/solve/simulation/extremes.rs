@@ -55,8 +55,8 @@ impl Peaks {
     }
 }
 
-/// A parabola turns in a part that changes it by less than half of its bend, and leads beyond the ends by an eighth of that
-/// at most. Four times as much is looked at.
+/// A parabola turns in a part that changes it by less than half of its bend, and leads beyond the ends by an eighth of
+/// that at most. Four times as much is looked at.
 const TURN: f64 = 2.0;
 const BEYOND: f64 = 0.5;
 
@@ -88,8 +88,8 @@ impl Extremes {
         self.arch.dispatch(Taking { known: self, t, values });
     }
 
-    /// Marks which outputs may turn in a part of a step, beyond what is known, beside those that are marked; gives whether
-    /// any may.
+    /// Marks which outputs may turn in a part of a step, beyond what is known, beside those that are marked; gives
+    /// whether any may.
     pub fn mark(&self, ends: Ends<'_>, marked: &mut [bool]) -> bool {
         self.arch.dispatch(Marking { known: self, ends, marked, is_any: false })
     }

@@ -25,7 +25,8 @@ pub struct Switching {
     pub jumps: bool,
 }
 
-/// A step that was accepted, with the states inside of it. A part `theta` of it is between 0, its start, and 1, its end.
+/// A step that was accepted, with the states inside of it. A part `theta` of it is between 0, its start, and 1, its
+/// end.
 pub struct Inside<'s, 'a> {
     stepper: &'s mut Stepper<'a>,
     projections: usize,
@@ -116,8 +117,8 @@ pub trait Observer {
         false
     }
 
-    /// Whether it is to be told of a step of `h` (s) to `t` (s) and the state `x` with the states inside of it. Asked, of
-    /// those who look inside, where runs are made side by side and these states are not at hand.
+    /// Whether it is to be told of a step of `h` (s) to `t` (s) and the state `x` with the states inside of it. Asked,
+    /// of those who look inside, where runs are made side by side and these states are not at hand.
     fn asks(&mut self, _h: f64, _t: f64, _x: &[f64], _negative: &[bool]) -> bool {
         self.looks_inside()
     }

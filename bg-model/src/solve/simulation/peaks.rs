@@ -1,14 +1,15 @@
 //! The least and the largest value of each output over a run, between the samples as well; or of other functions of the
 //! state.
 //!
-//! In: the steps of a run, with the states inside of them. Out: for each output two values with their instants, over the
-//! whole run and from an instant on, or over given windows of time. They depend on the steps alone, not on the samples.
+//! In: the steps of a run, with the states inside of them. Out: for each output two values with their instants, over
+//! the whole run and from an instant on, or over given windows of time. They depend on the steps alone, not on the
+//! samples.
 //!
-//! Method: the outputs at the end of each step and at the two ends before show how they bend. Where an output may turn in
-//! the step, and beyond what is known so far, its slopes at both ends give a cubic. Where that leads beyond what is known
-//! as well, the step's dense output is evaluated where the cubic turns, and searched where it is off the cubic there. So most
-//! steps take one evaluation of the outputs. A step of a method of higher order is longer beside what happens in it, and looked at in several parts.
-//! At an event both sides count.
+//! Method: the outputs at the end of each step and at the two ends before show how they bend. Where an output may turn
+//! in the step, and beyond what is known so far, its slopes at both ends give a cubic. Where that leads beyond what is
+//! known as well, the step's dense output is evaluated where the cubic turns, and searched where it is off the cubic
+//! there. So most steps take one evaluation of the outputs. A step of a method of higher order is longer beside what
+//! happens in it, and looked at in several parts. At an event both sides count.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -131,8 +132,8 @@ impl Past {
         self.known = 2;
     }
 
-    /// The values at the start of a part, those before them, and by how much a change since then is multiplied to be that
-    /// which is expected in a part of `h` (s): none where none is known.
+    /// The values at the start of a part, those before them, and by how much a change since then is multiplied to be
+    /// that which is expected in a part of `h` (s): none where none is known.
     fn expected(&self, h: f64) -> (&[f64], &[f64], f64) {
         if self.known < 2 { (&self.values, &self.values, 0.0) } else { (&self.values, &self.before, h / self.h) }
     }
@@ -198,7 +199,8 @@ impl<'a> PeakMonitor<'a> {
         self.windows.get(window)?.known.peaks(index)
     }
 
-    /// Whether an output may turn in a part of `h` (s) that ends at `t` (s) in `to`, beyond what is known; marks which do.
+    /// Whether an output may turn in a part of `h` (s) that ends at `t` (s) in `to`, beyond what is known; marks which
+    /// do.
     fn may_turn(&mut self, t: f64, h: f64) -> bool {
         let Self { windows, past, to, may_turn, .. } = self;
         may_turn.fill(false);
@@ -216,8 +218,8 @@ impl<'a> PeakMonitor<'a> {
         self.past.advance(h, &mut self.to);
     }
 
-    /// Evaluates the slopes of the outputs, which are `values`, at the part `theta` of a step: by a difference to a part
-    /// before, or after at the start.
+    /// Evaluates the slopes of the outputs, which are `values`, at the part `theta` of a step: by a difference to a
+    /// part before, or after at the start.
     fn slope(&mut self, step: &mut Inside<'_, '_>, theta: f64, is_end: bool) {
         let Self { of, past, to, slopes, x, .. } = self;
         let beside = if theta > 0.0 { -DIFFERENCE } else { DIFFERENCE };
@@ -336,8 +338,8 @@ impl Course {
         self.off() <= RESOLVED * (largest - least)
     }
 
-    /// Whether the cubic is the course: where it turns, the output, `at` that part, is as the cubic has it. Then these are its
-    /// peaks, as a small error of the place moves them by its square only.
+    /// Whether the cubic is the course: where it turns, the output, `at` that part, is as the cubic has it. Then these
+    /// are its peaks, as a small error of the place moves them by its square only.
     fn is_cubic(&self, mut at: impl FnMut(f64) -> f64) -> bool {
         const NEAR: f64 = 1e-6;
         let turns = self.turns();

@@ -282,8 +282,8 @@ impl SizeMonitor {
         })
     }
 
-    /// A point ahead, so near that the rates on the way to it depend little on it: also on where it leads positions from
-    /// rest.
+    /// A point ahead, so near that the rates on the way to it depend little on it: also on where it leads positions
+    /// from rest.
     fn way_ahead(&self, stepper: &mut Stepper<'_>, longest: f64) -> Option<Point> {
         const TRIES: usize = 100;
         const SHORTER: [f64; 2] = [1e-6, 0.5];

@@ -368,9 +368,11 @@ fn sampled_controllers_are_their_difference_equations() {
     let ran = after(
         0.9,
         "use controllers;",
-        "part place: SampledPositionControl { wanted = 2 rad; measured = shaft.displacement; period = 4; gain = 6; limit = 5 rad/s; }
+        "part place: SampledPositionControl { wanted = 2 rad; measured = shaft.displacement; period = 4; gain = 6; \
+        limit = 5 rad/s; }
         part speed: SampledSpeedControl {
-            wanted = place.command; measured = shaft.flow; period = 1; gain = 3; reset = 0.1 s; limit = 4 N*m; tracking = 0.05 s;
+            wanted = place.command; measured = shaft.flow; period = 1; gain = 3; reset = 0.1 s; limit = 4 N*m; \
+            tracking = 0.05 s;
         }
         MSe motor = speed.command; 1 shaft: rotation; I wheel = 0.1; motor -> shaft -> wheel;
         observe { angle: rad = shaft.displacement; turning: rad/s = shaft.flow; all of place; all of speed }",
@@ -402,8 +404,10 @@ fn a_sampled_current_control_holds_its_voltage() {
     let ran = after(
         0.02,
         "use controllers;",
-        "part control: SampledCurrentControl { wanted = 3 A; measured = coil.flow; period = 0.5; gain = 2; reset = 4 ms; limit = 12 V; tracking = 2 ms; }
-        MSe bridge = control.command; 1 coil: electrical; I winding = 2e-3; R copper = 1.5; bridge -> coil -> winding; coil -> copper;
+        "part control: SampledCurrentControl { wanted = 3 A; measured = coil.flow; period = 0.5; gain = 2; \
+        reset = 4 ms; limit = 12 V; tracking = 2 ms; }
+        MSe bridge = control.command; 1 coil: electrical; I winding = 2e-3; R copper = 1.5; bridge -> coil -> winding; \
+        coil -> copper;
         observe { current: A = coil.flow; all of control }",
     );
     let (stays, period): (f64, f64) = ((-1.5 * 0.5e-3 / 2e-3_f64).exp(), 0.5e-3);

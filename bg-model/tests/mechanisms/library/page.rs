@@ -31,7 +31,8 @@ fn inputs(part: &LibraryPart) -> Vec<(&'static str, &'static str)> {
     lines.filter_map(|line| line.trim_end_matches(';').split_once(": ")).collect()
 }
 
-/// A graph with one part, `p`, and something at each of its ports but those that `left` out; `clauses` inside of its use.
+/// A graph with one part, `p`, and something at each of its ports but those that `left` out; `clauses` inside of its
+/// use.
 fn graph(part: &LibraryPart, left: usize, clauses: &str) -> String {
     let bonds: String = ports(part)
         .iter()
@@ -148,7 +149,8 @@ fn of_signals(part: &LibraryPart) -> Vec<Mistake> {
     let given = "wanted = 1; measured = j.displacement;";
     let text = |clauses: &str, law: &str| {
         format!(
-            "use {}; graph Tried {{ part p: {} {{ {clauses} }} 1 j: rotation; I i = 1; MSe m = {law}; m -> j -> i; observe {{ all of p }} }}",
+            "use {}; graph Tried {{ part p: {} {{ {clauses} }} 1 j: rotation; I i = 1; MSe m = {law}; m -> j -> i; \
+            observe {{ all of p }} }}",
             part.file, part.name
         )
     };

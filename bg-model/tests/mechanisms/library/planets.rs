@@ -261,8 +261,10 @@ fn involute_teeth_push_their_gears_apart() {
                 "ground {{ point O = [0, 0, 0]; point P = [0.072, 0.096, 0]; }}
                 body pinion {{ mass 1; inertia [1e-3, 1e-3, 1e-3]; }}
                 body wheel {{ mass 5; inertia [0.04, 0.04, 0.04]; start at [0.072, 0.096, 0]; }}
-                joint first: revolute z (ground.O -> pinion) {{ rigid; }} joint second: revolute z (ground.P -> wheel) {{ rigid; }}
-                part pair: BodyInvolutePair {{ first_radius = 30 mm; second_radius = 90 mm; pressure_angle = {angle:?} deg;
+                joint first: revolute z (ground.O -> pinion) {{ rigid; }} joint second: revolute z (ground.P -> wheel) \
+                {{ rigid; }}
+                part pair: BodyInvolutePair {{ first_radius = 30 mm; second_radius = 90 mm; \
+                pressure_angle = {angle:?} deg;
                     away_x = wheel.position.x - pinion.position.x; away_y = wheel.position.y - pinion.position.y; }}
                 pinion.translation -> pair.first; pinion.rotation -> pair.first_turn; wheel.translation -> pair.second;
                 wheel.rotation -> pair.second_turn;

@@ -332,9 +332,11 @@ fn a_fast_belt_lifts_off_its_pulleys() {
             3.0,
             "use belts;",
             &format!(
-                "part belt: FastBeltDrive {{ friction = 0.3; wrap = 160 deg; tension = 250 N; sliding = 20; mass = 0.2 kg/m; }}
+                "part belt: FastBeltDrive {{ friction = 0.3; wrap = 160 deg; tension = 250 N; sliding = 20; \
+                mass = 0.2 kg/m; }}
                 Sf motor = {speed:?}; Sf held = 0;
-                1 a: rotation; 1 b: rotation; motor -> a -> belt.first; belt.second -> b; held -> b; observe {{ all of belt }}"
+                1 a: rotation; 1 b: rotation; motor -> a -> belt.first; belt.second -> b; held -> b; \
+                observe {{ all of belt }}"
             ),
         )
     };

@@ -66,8 +66,8 @@ mod tests {
 
     #[test]
     fn a_head_comment_says_everything() {
-        let source = "//! A block on a slide.\n//!\n//! Look at `v`\n//! and at `x`.\n//!\n//!     cargo run --release --example block -- \
-                      --t-end 3\n\nuse x;\n//! no head\n";
+        let source = "//! A block on a slide.\n//!\n//! Look at `v`\n//! and at `x`.\n//!\n//!     cargo run --release \
+                      --example block -- --t-end 3\n\nuse x;\n//! no head\n";
         let example = Example::parse("block", source).unwrap();
         assert_eq!((example.title.as_str(), example.output.as_str()), ("A block on a slide", "v"));
         assert_eq!(example.text, "Look at `v` and at `x`.");

@@ -24,9 +24,10 @@ pub fn chart(example: &Example) -> String {
 /// `docs/gallery.md`, whose pictures are in the folder `gallery` beside it. `has` says whether there is a picture.
 pub fn markdown(examples: &[Example], has: impl Fn(&str) -> bool) -> String {
     let mut page = String::from(
-        "# Gallery\n\nThe examples of `bg-model/workbench/examples`, each a complete program: the bond graph, the machine, one \
-         of its outputs.\nMade by `cargo run --release -p bg-gallery` from their head comments; the machines need Chromium. A \
-         folder of pages in which they\nmove: `cargo run --release -p bg-gallery -- --out site`.\n",
+        "# Gallery\n\nThe examples of `bg-model/workbench/examples`, each a complete program: the bond graph, the \
+         machine, one of its outputs.\nMade by `cargo run --release -p bg-gallery` from their head comments; \
+         the machines need Chromium. A folder of pages in which they\nmove: `cargo run --release -p bg-gallery -- \
+         --out site`.\n",
     );
     for example in examples {
         let Example { name, title, text, output, .. } = example;
@@ -60,9 +61,10 @@ code { font-size: .95em; }\n";
 pub fn index(examples: &[Example], has: impl Fn(&str) -> bool) -> String {
     let mut page = format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n<title>Gallery</title>\n\
-         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>Gallery</h1>\n<p>Machines as bond graphs. Each page runs its model in \
-         the browser.</p>\n<br>\n<main>\n"
+         content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" \
+         href=\"data:,\">\n<title>Gallery</title>\n\
+         <style>\n{STYLE}</style>\n</head>\n<body>\n<h1>Gallery</h1>\n<p>Machines as bond graphs. Each page runs its \
+         model in the browser.</p>\n<br>\n<main>\n"
     );
     for example in examples {
         let machine = machine(example);

@@ -94,7 +94,8 @@ pub trait Machine {
         None
     }
 
-    /// What is known of a run from its own start for some criteria, with the slopes of these by the parameters called `by`.
+    /// What is known of a run from its own start for some criteria, with the slopes of these by the parameters called
+    /// `by`.
     ///
     /// # Errors
     /// As [`Machine::sensitivities`].
@@ -108,8 +109,8 @@ pub trait Machine {
         None
     }
 
-    /// What a search for the optimum that `job` asks for has found; `told` is told of each run, and says whether it goes
-    /// on.
+    /// What a search for the optimum that `job` asks for has found; `told` is told of each run, and says whether it
+    /// goes on.
     ///
     /// # Errors
     /// As [`bg_analysis::optimize::minimum`].

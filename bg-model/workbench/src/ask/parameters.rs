@@ -260,8 +260,8 @@ pub(crate) fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The number that a text gives of a parameter, in its unit. Of an unknown name any: that is the better message where both
-/// are wrong.
+/// The number that a text gives of a parameter, in its unit. Of an unknown name any: that is the better message where
+/// both are wrong.
 fn measured(parameters: &Chosen, place: &str, name: &str, text: &str) -> Result<f64, SettingError> {
     let Some(index) = parameters.values.place(name) else { return Ok(0.0) };
     let fault = |fault| SettingError::NotANumber { place: place.to_owned(), name: name.to_owned(), fault };

@@ -1,7 +1,7 @@
 //! Numbers as a person gives them: `75`, `75mm`, `30 deg`.
 //!
-//! In: a text, the unit in which a parameter or an input is declared. Out: the number in that unit. Columns of files have
-//! their units in their heads.
+//! In: a text, the unit in which a parameter or an input is declared. Out: the number in that unit. Columns of files
+//! have their units in their heads.
 
 use std::f64::consts::TAU;
 

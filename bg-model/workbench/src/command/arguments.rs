@@ -249,15 +249,16 @@ pub struct RunArguments {
     #[arg(long, value_name = "FILE.json")]
     pub from: Option<PathBuf>,
 
-    /// Make the run of a summary.json again, with its scene, parameters, inputs, start and integrator: the same bits. Files
-    /// of inputs are read again and have to be the same
+    /// Make the run of a summary.json again, with its scene, parameters, inputs, start and integrator: the same bits.
+    /// Files of inputs are read again and have to be the same
     #[arg(long, value_name = "summary.json", conflicts_with_all = [
-        "scene", "set", "params", "input", "t_end", "method", "hint", "fixed_step", "rtol", "atol", "step", "start", "from"
+        "scene", "set", "params", "input", "t_end", "method", "hint", "fixed_step", "rtol", "atol", "step", "start",
+            "from"
     ])]
     pub again: Option<PathBuf>,
 
-    /// Keep these outputs only, in this order: in the CSV file, the summary, the page and the figures; several with commas.
-    /// A name without components stands for all of them
+    /// Keep these outputs only, in this order: in the CSV file, the summary, the page and the figures; several with
+    /// commas. A name without components stands for all of them
     #[arg(long = "output", value_name = "NAME", value_delimiter = ',')]
     pub outputs: Vec<String>,
 
@@ -295,8 +296,8 @@ pub struct RunArguments {
 /// Where the trajectory goes, and as what.
 #[derive(Clone, Debug, Args)]
 pub struct TrajectoryArguments {
-    /// Write the trajectory here instead of trajectory.csv in --out. Replaces a file that is there; later runs leave it.
-    /// `-` is standard output; the summary goes to standard error then
+    /// Write the trajectory here instead of trajectory.csv in --out. Replaces a file that is there; later runs leave
+    /// it. `-` is standard output; the summary goes to standard error then
     #[arg(long, value_name = "FILE")]
     pub csv: Option<PathBuf>,
 
@@ -493,7 +494,8 @@ pub struct PrecisionArguments {
     pub atol_ratio: Option<f64>,
 
     /// Steps of integrators with a fixed step, s
-    #[arg(long, value_name = "SECONDS", value_delimiter = ',', value_parser = real, default_values = ["2e-4", "1e-4", "5e-5", "2e-5"])]
+    #[arg(long, value_name = "SECONDS", value_delimiter = ',', value_parser = real, default_values = ["2e-4", "1e-4",
+        "5e-5", "2e-5"])]
     pub fixed_step: Vec<f64>,
 
     /// Runs of each point, within two seconds; the least and the median of their times count

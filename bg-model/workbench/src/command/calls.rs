@@ -88,8 +88,8 @@ pub struct Ran {
     pub inputs: Vec<Named>,
 }
 
-/// Is told after each step of a run which part of it is done, 0 to 1, and says whether to go on; where not, the run ends
-/// there.
+/// Is told after each step of a run which part of it is done, 0 to 1, and says whether to go on; where not, the run
+/// ends there.
 pub type Told<'a> = &'a dyn Fn(f64) -> bool;
 
 fn refused(fault: impl std::fmt::Display) -> Refused {
@@ -242,8 +242,8 @@ pub struct Fit {
     pub columns: Vec<String>,
 }
 
-/// The parameters with which outputs are nearest to what was measured, as `identify --json` gives them; `told` is told of
-/// each run.
+/// The parameters with which outputs are nearest to what was measured, as `identify --json` gives them; `told` is told
+/// of each run.
 ///
 /// # Errors
 /// It cannot be sought, or no fit came about.
@@ -290,7 +290,8 @@ pub fn page(program: &Program, asked: &Asked, told: Told<'_>) -> Result<String, 
     whole_report(program, &order, told).map_err(Refused)
 }
 
-/// The parameters with which what `goals` asks for is least or largest; `told` is asked after each run whether to go on.
+/// The parameters with which what `goals` asks for is least or largest; `told` is asked after each run whether to go
+/// on.
 ///
 /// # Errors
 /// It cannot be sought, or no search came about.
@@ -309,8 +310,8 @@ pub fn optimize(
 }
 
 /// The modes over a parameter, `NAME=FROM..TO`, at so many values: about the model's start or its equilibrium, or where
-/// its run is at `at`, s. Orders are those that are given, else 1 and 2 of a speed. `told` is asked after each value, with
-/// the part that is done, whether to go on.
+/// its run is at `at`, s. Orders are those that are given, else 1 and 2 of a speed. `told` is asked after each value,
+/// with the part that is done, whether to go on.
 ///
 /// # Errors
 /// It cannot be asked for, or no value has a linear model.

@@ -120,8 +120,8 @@ pub fn asked(
     Ok(Asked { by: info, range, points, orders, up_to })
 }
 
-/// The modes over the parameter: of models that are linearised at `place`, a time (s) or the equilibrium; runs there are
-/// made as `to` says. `told` is told after each model how many there were, and says whether to go on.
+/// The modes over the parameter: of models that are linearised at `place`, a time (s) or the equilibrium; runs there
+/// are made as `to` says. `told` is told after each model how many there were, and says whether to go on.
 pub fn followed(
     program: &Program,
     scene: &Scene,

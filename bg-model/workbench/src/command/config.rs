@@ -1,8 +1,8 @@
 //! Options from a file: `--config run.toml`.
 //!
-//! In: the words of a command line. Out: the same with the options of the file in front of the others, so that those on the
-//! command line win. A key is the name of an option, its value a number, a text, `true`, a list for an option that can be given again
-//! and again, or a table for one that takes `NAME=VALUE`.
+//! In: the words of a command line. Out: the same with the options of the file in front of the others, so that those on
+//! the command line win. A key is the name of an option, its value a number, a text, `true`, a list for an option that
+//! can be given again and again, or a table for one that takes `NAME=VALUE`.
 
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};

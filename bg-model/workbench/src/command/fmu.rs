@@ -23,26 +23,28 @@ use crate::program::Program;
 #[derive(Debug, Error)]
 pub(super) enum LibraryError {
     #[error(
-        "there is no library {file} in {}: build a package of crate-type \"cdylib\" with `bg_fmi::export!({model});` in its lib.rs, \
-         or give it as --library FILE; docs/fmu.md shows one",
+        "there is no library {file} in {}: build a package of crate-type \"cdylib\" with `bg_fmi::export!({model});` \
+         in its lib.rs, or give it as --library FILE; docs/fmu.md shows one",
         folder.display()
     )]
     Absent { file: String, folder: PathBuf, model: &'static str },
     #[error(
-        "there is no library {file} in {}: build it by `cargo build --release -p {package}`, or give it as --library FILE",
+        "there is no library {file} in {}: build it by `cargo build --release -p {package}`, or give it as --library \
+        FILE",
         folder.display()
     )]
     Unbuilt { file: String, folder: PathBuf, package: &'static str },
     #[error("--library {}: {source}", path.display())]
     Unreadable { path: PathBuf, source: io::Error },
     #[error(
-        "--library {}: it exports no model for FMI {}; give the file that cargo builds of a package with `bg_fmi::export!(..)`",
+        "--library {}: it exports no model for FMI {}; give the file that cargo builds of a package with \
+        `bg_fmi::export!(..)`",
         .0.display(), .1
     )]
     Foreign(PathBuf, &'static str),
     #[error(
-        "--library {}: it has no `{model}` as this program has it: it exports another model, or one of other sources; build both anew \
-         and pack again",
+        "--library {}: it has no `{model}` as this program has it: it exports another model, or one of other sources; \
+         build both anew and pack again",
         path.display()
     )]
     OtherBuild { path: PathBuf, model: &'static str },

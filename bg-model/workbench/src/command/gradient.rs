@@ -35,8 +35,8 @@ pub struct OneNumber {
     #[arg(long, requires = "output", conflicts_with = "at")]
     pub integral: bool,
 
-    /// One number likewise: the squares of what these columns leave, in parts of each one's root mean square. A CSV file
-    /// as `identify` takes it; the run ends at its last time
+    /// One number likewise: the squares of what these columns leave, in parts of each one's root mean square. A CSV
+    /// file as `identify` takes it; the run ends at its last time
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["output", "at", "integral"])]
     pub data: Option<PathBuf>,
 

@@ -244,9 +244,12 @@ pub fn commands() -> clap::Command {
 fn command(program: &Program) -> clap::Command {
     let help = format!(
         "Parameters (name, default, unit, meaning); defaults < --params < --set:\n{}\n\
-         Files: a folder has the files of one run. They are written aside and take their place at the end, when those of the\n\
-         run before are removed; a run that is stopped leaves the earlier one's. Files that no run wrote are left alone: a run\n\
-         that would replace one is refused, as is a second run into the same folder at once. What a run wrote is listed in\n\
+         Files: a folder has the files of one run. They are written aside and take their place at the end, when those \
+         of the\n\
+         run before are removed; a run that is stopped leaves the earlier one's. Files that no run wrote are left \
+         alone: a run\n\
+         that would replace one is refused, as is a second run into the same folder at once. What a run wrote is \
+         listed in\n\
          `.run` in the folder.\n\n\
          Exit code: 0 done, 1 the run or an output failed (what could be written is), 2 the input cannot be used.",
         parameters::table(program.models.defaults().table())

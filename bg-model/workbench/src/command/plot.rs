@@ -27,8 +27,8 @@ pub struct PlotArguments {
     #[arg(long, value_name = "SIGNAL", required = true, allow_hyphen_values = true)]
     pub show: Vec<String>,
 
-    /// Over this in place of the time: a phase plane, a path, a hodograph. Where both are in one unit, both axes have one
-    /// scale
+    /// Over this in place of the time: a phase plane, a path, a hodograph. Where both are in one unit, both axes have
+    /// one scale
     #[arg(long, value_name = "SIGNAL", conflicts_with_all = ["spectrum", "order"], allow_hyphen_values = true)]
     pub over: Option<String>,
 

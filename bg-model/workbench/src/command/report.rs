@@ -64,8 +64,8 @@ impl Look {
         self.files.form == PageForm::Framed
     }
 
-    /// The modes, where they are wanted, or a sentence why there are none: of a machine that has no equilibrium, or does
-    /// not come to the instant, the rest of the page stands.
+    /// The modes, where they are wanted, or a sentence why there are none: of a machine that has no equilibrium, or
+    /// does not come to the instant, the rest of the page stands.
     pub fn modes(&self, machine: &dyn Machine) -> Result<Option<Result<Linearised, String>>, InputError> {
         let Some(at) = self.modes else { return Ok(None) };
         match self.linearised(machine, at) {

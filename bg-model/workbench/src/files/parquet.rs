@@ -1,10 +1,10 @@
 //! Tables as Parquet files: one row group, a page for each column.
 //!
 //! In: columns of numbers and texts, texts about them. Out: the file's bytes, and from these the same again. Numbers
-//! are exact; a real number that is none is null. Metadata are those of `polars-parquet-format`; pages are written here,
-//! for they are short: the values one after the other (`PLAIN`, which every reader has), compressed by Snappy; of real
-//! numbers before them which are there (definition levels, `RLE`). Source: Apache Parquet, "File Format" and "Encodings",
-//! parquet.apache.org/docs/file-format.
+//! are exact; a real number that is none is null. Metadata are those of `polars-parquet-format`; pages are written
+//! here, for they are short: the values one after the other (`PLAIN`, which every reader has), compressed by Snappy; of
+//! real numbers before them which are there (definition levels, `RLE`). Source: Apache Parquet, "File Format" and
+//! "Encodings", parquet.apache.org/docs/file-format.
 
 use std::io;
 
@@ -252,8 +252,8 @@ impl Table {
         Ok(Self { columns, texts: texts(metadata) })
     }
 
-    /// Writes its rows as CSV: every number in the shortest form that reads back to the same bits, nothing where there is
-    /// none.
+    /// Writes its rows as CSV: every number in the shortest form that reads back to the same bits, nothing where there
+    /// is none.
     ///
     /// # Errors
     /// `csv` fails.

@@ -53,8 +53,8 @@ pub struct Unreadable {
     pub source: SamplesError,
 }
 
-/// Reads a CSV file whose first column is `t`. Units are those in the heads, as in `speed [rpm]`, else left empty; the time
-/// is in s then.
+/// Reads a CSV file whose first column is `t`. Units are those in the heads, as in `speed [rpm]`, else left empty; the
+/// time is in s then.
 ///
 /// # Errors
 /// A file that is no CSV, has no `t`, or a field that is no number.
@@ -89,8 +89,8 @@ pub fn read_file(path: &Path) -> Result<Recording, Unreadable> {
     read(file).map_err(unreadable)
 }
 
-/// Reads the file of a run of a model that has these outputs, as [`read_file`] does: columns of their names are in their
-/// units then. A file may have others, or none, which are these.
+/// Reads the file of a run of a model that has these outputs, as [`read_file`] does: columns of their names are in
+/// their units then. A file may have others, or none, which are these.
 ///
 /// # Errors
 /// [`Unreadable`].

@@ -48,8 +48,8 @@ pub trait Extras {
         }
     }
 
-    /// The instant, s, from which on a start does not count any more: from there on the peaks of the outputs are known as
-    /// well ([`Column::settled`]); `None` where that is not asked for.
+    /// The instant, s, from which on a start does not count any more: from there on the peaks of the outputs are known
+    /// as well ([`Column::settled`]); `None` where that is not asked for.
     fn settled(&self) -> Option<f64> {
         None
     }

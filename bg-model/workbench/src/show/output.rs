@@ -150,8 +150,8 @@ pub struct Written {
 }
 
 impl Claimed {
-    /// Writes the trajectory, which is `output`, and everything else from `run` and `summary`, whose list of files it fills.
-    /// `texts` are those of the page; `exhibits` is what it shows beside them.
+    /// Writes the trajectory, which is `output`, and everything else from `run` and `summary`, whose list of files it
+    /// fills. `texts` are those of the page; `exhibits` is what it shows beside them.
     pub fn write(
         self,
         output: &Recording,

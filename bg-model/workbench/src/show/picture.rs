@@ -83,7 +83,8 @@ impl Drawn {
     }
 }
 
-/// The same, taken from a file where that has the picture of this very graph, else drawn and kept there. A file that cannot be used is as none.
+/// The same, taken from a file where that has the picture of this very graph, else drawn and kept there. A file that
+/// cannot be used is as none.
 #[cfg(not(target_arch = "wasm32"))]
 #[must_use]
 pub fn svg_kept(description: &Description, file: &Path) -> String {

@@ -1,7 +1,7 @@
 //! The samples of a run as a table, in the form that a reader wants.
 //!
-//! In: samples. Out: a CSV file, Parquet, or arrays for numpy. Numbers have all their bits in each of them; what is no number is
-//! `NaN` in CSV and for numpy, null in Parquet.
+//! In: samples. Out: a CSV file, Parquet, or arrays for numpy. Numbers have all their bits in each of them; what is no
+//! number is `NaN` in CSV and for numpy, null in Parquet.
 
 use std::io::{self, Write};
 

@@ -1,5 +1,5 @@
-//! The floors of the workbench: what is asked, one run, what it looks like, the program, studies of many runs, commands.
-//! No room imports from one above it, or from another on its floor, and few arrows lead from room to room.
+//! The floors of the workbench: what is asked, one run, what it looks like, the program, studies of many runs,
+//! commands. No room imports from one above it, or from another on its floor, and few arrows lead from room to room.
 //!
 //! Imports are read from the source, as paths that begin with `crate::` or `super::`. Modules of tests are left out.
 

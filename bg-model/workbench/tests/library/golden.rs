@@ -1,6 +1,7 @@
 //! Golden outputs as a user meets them: recorded, checked, and every way in which they can differ or be unusable.
 //!
-//! The models of this file are one mechanism at different times: one that was changed is another model of the same name.
+//! The models of this file are one mechanism at different times: one that was changed is another model of the same
+//! name.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -349,8 +350,8 @@ fn a_file_of_an_input_that_has_changed_is_told_before_any_run() {
     check::<driven::Slide>(bench.folder()).unwrap();
     // After the end of the run, where no value sees it.
     fs::write(&table, "0,4\n1,2\n2,9\n").unwrap();
-    let expected = "DIR/literal.toml: the file of the input `force` is not the one that the run was recorded with; restore it, \
-                    or record the run again";
+    let expected = "DIR/literal.toml: the file of the input `force` is not the one that the run was recorded with; \
+                    restore it, or record the run again";
     assert_eq!(bench.fault::<driven::Slide>(), expected);
     // A record of an earlier version knows no file.
     let toml = bench.read("literal.toml");

@@ -13,7 +13,8 @@ use bg_workbench::sweep::{Outcome, Share, recipe, sweep};
 bond_graph! {
     /// A block on a spring, whose contact resists its two directions differently. It knows no speed above a limit.
     pub graph Block {
-        param mass: kg = 1, above 0; param stiffness: N/m = 40, at least 0; param cut: N*s/m = 0.3; param limit: m/s = 9; param unit: m/s = 1;
+        param mass: kg = 1, above 0; param stiffness: N/m = 40, at least 0; param cut: N*s/m = 0.3;
+        param limit: m/s = 9; param unit: m/s = 1;
         param start: m = 0.5;
         1 slide: translation; I block = mass; C spring = stiffness start start;
         R saw(v) = if v < 0 { cut * v * sqrt((limit + v) / unit) } else { 0.5 * cut * v };

@@ -1,4 +1,5 @@
-//! A live page: the model inside gives the bits that it gives natively, in node and, after a move of a slider, in a browser.
+//! A live page: the model inside gives the bits that it gives natively, in node and, after a move of a slider, in a
+//! browser.
 
 use std::fs;
 use std::io::Write;
@@ -40,7 +41,8 @@ fn parsed(answer: &str) -> Value {
     serde_json::from_str(answer).expect("an answer is JSON")
 }
 
-/// The live report of the pendulum over 2 s, made once; `None`, and a line that says why, where the target is not installed.
+/// The live report of the pendulum over 2 s, made once; `None`, and a line that says why, where the target is not
+/// installed.
 fn page() -> Option<&'static Path> {
     static PAGE: OnceLock<Option<PathBuf>> = OnceLock::new();
     let page = PAGE.get_or_init(|| {

@@ -1,7 +1,7 @@
 //! Pictures as readers of SVG that are no browsers draw them: those that are installed.
 //!
-//! In: a graph's picture and a figure with subscripts. Out: pixels. Ink is looked for where the SVG has it: a box in its
-//! colour, its texts centred in it, a stroke at its place, and little elsewhere.
+//! In: a graph's picture and a figure with subscripts. Out: pixels. Ink is looked for where the SVG has it: a box in
+//! its colour, its texts centred in it, a stroke at its place, and little elsewhere.
 
 use std::path::Path;
 use std::process::Command;

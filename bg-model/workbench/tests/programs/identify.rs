@@ -130,8 +130,8 @@ fn what_cannot_be_identified_is_said_by_name() {
     assert!(bounded.contains("`stiffness` is at its bound") && found(&bounded, "stiffness").0 == 200.0, "{bounded}");
 }
 
-/// Some ten turns that end in an error of the frequency: the next minimum has the model run half a turn ahead, or more. It
-/// is seen by what it leaves, and the first turns lead out of it; where the model is another one nothing does.
+/// Some ten turns that end in an error of the frequency: the next minimum has the model run half a turn ahead, or more.
+/// It is seen by what it leaves, and the first turns lead out of it; where the model is another one nothing does.
 #[test]
 fn another_minimum_is_left_and_another_model_is_a_failure() {
     let folder = tempfile::tempdir().unwrap();

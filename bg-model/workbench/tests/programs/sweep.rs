@@ -162,7 +162,8 @@ fn a_sweep_that_is_killed_at_any_instant_goes_on_to_the_same_bytes() {
 #[test]
 fn a_run_that_fails_is_a_row_with_its_reason() {
     // 120 steps are enough for the first run, not for the second.
-    let plan = "t_end = 0.11\nmethod = 'dop853'\nstep_limit = 120\nlist = \"runs.csv\"\ntrajectories = ['angle']\ncolumns = ['max']\n";
+    let plan = "t_end = 0.11\nmethod = 'dop853'\nstep_limit = 120\nlist = \"runs.csv\"\ntrajectories = \
+        ['angle']\ncolumns = ['max']\n";
     let folder = with_plan(&format!("event_times = 2\n{plan}"));
     let path = folder.path();
     fs::write(path.join("runs.csv"), "angle, length\n0.5, 0.6\n1.57, 0.4\n").unwrap();

@@ -88,7 +88,8 @@ fn options_come_from_a_file_and_those_of_the_command_line_win() {
     for (text, expected) in [
         (
             "t_ende = 1",
-            "error: --config run.toml: unexpected argument '--t-ende' found; tip: a similar argument exists: '--t-end'; --help says more\n",
+            "error: --config run.toml: unexpected argument '--t-ende' found; \
+            tip: a similar argument exists: '--t-end'; --help says more\n",
         ),
         (
             "t_end = \"long\"",

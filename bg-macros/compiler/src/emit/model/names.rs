@@ -181,8 +181,9 @@ fn entry(array: &str, index: u32) -> String {
 pub(super) fn of_states(equations: &StateEquations) -> Vec<Ident> {
     // Words of the functions' bodies, of a series from `k` on; at the end constants and variants, which no `let` can
     // hide.
-    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table inner at first_product next_product reactions kept sides found weights by_state by_constants \
-        DESCRIPTION Some None Ok Err";
+    const OWN: &str = "t x c q r u v y dx negative guards state projected entries slope k h rows series part table \
+        inner at first_product next_product reactions kept sides found weights by_state by_constants DESCRIPTION Some \
+        None Ok Err";
     let mut used: BTreeSet<String> = OWN.split_whitespace().map(str::to_owned).collect();
     for input in &equations.inputs {
         used.extend(["u", "slope"].map(|prefix| format!("{prefix}_{}", names::field(&input.name.text))));

@@ -107,7 +107,10 @@ impl Emission<'_> {
         let (inputs, cloned) = (has_inputs.then(|| quote!(, inputs)), has_inputs.then(|| quote!(, inputs.clone())));
         let decided = self.decided();
         let (assumed, moved) = (decided.assumed(), decided.moved());
-        let made = |arguments: &TokenStream| quote!(Model::<f64>::made(parameters.clone(), parameters.numbers() #cloned #arguments));
+        let made = |arguments: &TokenStream| {
+            quote!(Model::<f64>::made(parameters.clone(),
+            parameters.numbers() #cloned #arguments))
+        };
         let count = self.tables.start.sides;
         let sides = (count > 0).then(|| {
             let made = made(&assumed);

@@ -158,7 +158,8 @@ impl Emission<'_> {
             impl<S: Scalar> ::bg_model::capability::Joints<S, #n, #g> for Model<S> {
                 fn held(&self) -> ::bg_model::holding::Held {
                     ::bg_model::holding::Held {
-                        rigid: &[#(#rigid,)*], compliant: &[#(#compliant,)*], moved: &[#(#moved),*], pose: &[#(#pose),*],
+                        rigid: &[#(#rigid,)*], compliant: &[#(#compliant,)*], moved: &[#(#moved),*],
+                            pose: &[#(#pose),*],
                         turning: &[#(#turning),*], closing: #closing, is_driven: #is_driven,
                     }
                 }

@@ -41,7 +41,8 @@ impl Explain for CausalFault {
             }
             F::OneWay { symbol, name, needs, by } => {
                 format!(
-                    "the law of {symbol} `{name}` needs its {needs}, but that is what it would have to give: {by} determines the other variable"
+                    "the law of {symbol} `{name}` needs its {needs}, but that is what it would have to give: {by} \
+                    determines the other variable"
                 )
             }
         }
@@ -63,8 +64,8 @@ impl Explain for CausalFault {
                 );
                 if *by_inertia {
                     format!(
-                        "{compliant}, or hold them together exactly with a residual sink, `rSe rigid = 0` at the 0-junction of \
-                         `.. -> 0 -> 1 -> {name}`, or merge the two inertias into one I"
+                        "{compliant}, or hold them together exactly with a residual sink, `rSe rigid = 0` at the \
+                         0-junction of `.. -> 0 -> 1 -> {name}`, or merge the two inertias into one I"
                     )
                 } else {
                     compliant

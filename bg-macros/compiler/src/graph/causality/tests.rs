@@ -70,10 +70,8 @@ fn two_causes_that_no_choice_avoids_are_named() {
     let text = "1 a: translation; 1 b: translation; a -> b; b -> a; a -> b;";
     assert_eq!(
         faults(text),
-        [
-            "BG0401 causal conflict: two bonds determine the flow of `a`: `b -> a` (forced by 1 `b`) and `a -> b` (forced by \
-             1 `b`)"
-        ]
+        ["BG0401 causal conflict: two bonds determine the flow of `a`: `b -> a` (forced by 1 `b`) and `a -> b` \
+             (forced by 1 `b`)"]
     );
 }
 
@@ -88,12 +86,12 @@ fn each_fault_comes_once_and_none_hides_another() {
     assert_eq!(
         faults(text),
         [
-            "BG0401 causal conflict: two bonds determine the effort of `b`: `s -> b` (forced by Se `s`) and `u -> b` (forced \
-             by Se `u`)",
+            "BG0401 causal conflict: two bonds determine the effort of `b`: `s -> b` (forced by Se `s`) and `u -> b` \
+             (forced by Se `u`)",
             "BG0402 causal conflict: no bond is left to determine the flow of `d`",
             "BG0402 causal conflict: no bond is left to determine the effort of `z`",
-            "BG0404 the law of R `r` needs its effort, but that is what it would have to give: Sf `f` determines the other \
-             variable",
+            "BG0404 the law of R `r` needs its effort, but that is what it would have to give: Sf `f` determines the \
+             other variable",
             "BG0403 I `k` would be in derivative causality: its state is already determined by I `i`",
             "BG0403 I `l` would be in derivative causality: its state is already determined by I `i`",
         ]
@@ -143,7 +141,8 @@ fn of_storages_that_determine_each_other_the_first_integrates() {
         derivative("1 a: rotation; TF n = 2; 1 b: rotation; I i = 1; I k = 2; a -> i; a -> n -> b -> k;"),
         ["k"]
     );
-    let motor = "1 a: electrical; param r: N*m/A = 2; GY n = r; 1 b: rotation; 0 c: rotation; I l = 1; param s: N*m/rad = 2; C k = s;";
+    let motor = "1 a: electrical; param r: N*m/A = 2; GY n = r; 1 b: rotation; 0 c: rotation; I l = 1; \
+        param s: N*m/rad = 2; C k = s;";
     assert_eq!(derivative(&format!("{motor} a -> l; a -> n -> c -> k; c -> b; I j = 3; b -> j;")), ["k"]);
 }
 
@@ -151,7 +150,8 @@ fn of_storages_that_determine_each_other_the_first_integrates() {
 fn a_law_without_an_inverse_and_a_start_keep_their_states() {
     assert_eq!(
         derivative(
-            "1 a: translation; I i = 1; param v: m/s = 1; param h: kg*m/s = 1; I k(p) = v * tanh(p / h); a -> i; a -> k;"
+            "1 a: translation; I i = 1; param v: m/s = 1; param h: kg*m/s = 1; I k(p) = v * tanh(p / h); a -> i; \
+            a -> k;"
         ),
         ["i"]
     );

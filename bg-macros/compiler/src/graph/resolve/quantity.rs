@@ -1,7 +1,7 @@
 //! Numbers with units: `75 mm` in an expression, defaults and ranges of parameters, what is declared in another unit.
 //!
-//! In: numbers and units as written. Out: numbers in SI, but of a parameter in its own unit, which is that of its number
-//! wherever it is given. No longer occurs: units that are not coherent, in the terms of a graph.
+//! In: numbers and units as written. Out: numbers in SI, but of a parameter in its own unit, which is that of its
+//! number wherever it is given. No longer occurs: units that are not coherent, in the terms of a graph.
 
 use bg_units::Unit;
 

@@ -68,8 +68,8 @@ impl Resolver {
         self.graph.lets.push(Let { name: name.clone(), value, declared, unit, clause: None });
     }
 
-    /// `delay(SIGNAL, TIME)`, `delay(SIGNAL, TIME, START)` at an instant: what the signal was at the instant TIME before,
-    /// and START where that is before the first one. A row of states hands the signal on, one at each instant.
+    /// `delay(SIGNAL, TIME)`, `delay(SIGNAL, TIME, START)` at an instant: what the signal was at the instant TIME
+    /// before, and START where that is before the first one. A row of states hands the signal on, one at each instant.
     pub(super) fn delayed_by_instants(&mut self, function: &Name, mut terms: Vec<Term>, clock: usize) -> Term {
         let span = function.span;
         let zero = Term { kind: TermKind::Number(0.0), span };

@@ -191,11 +191,13 @@ pub enum Touching {
     Line(Axis),
     /// `plane z`: through the end, with this outward normal.
     Plane(Axis),
-    /// `segment x E`: a thin wall from the end along an axis of it, with this length in m; both sides and ends are free.
+    /// `segment x E`: a thin wall from the end along an axis of it, with this length in m; both sides and ends are
+    /// free.
     Segment(Axis, Expression),
     /// `slot x E width E`: the inside of what a circle of this width covers on its way along a segment.
     Slot(Axis, [Expression; 2]),
-    /// `arc E from E to E`: a thin wall on a circle around the end, between two angles about its z axis from its x axis.
+    /// `arc E from E to E`: a thin wall on a circle around the end, between two angles about its z axis from its x
+    /// axis.
     Arc([Expression; 3]),
     /// `profile TABLE`: the distance of the outline by the angle about the end's z axis, or its height over the x axis.
     Profile(Name),

@@ -29,7 +29,8 @@ impl Expansion<'_> {
                  I {name}.angular = {name}.tensor in {name}.orientation start {name}.start.orientation *
                      ({name}.tensor * (transpose({name}.start.orientation) * {name}.start.spin));
                  {name}.translation -> {name}.linear; {name}.rotation -> {name}.angular;
-                 let {name}.velocity = {name}.translation.flow; let {name}.angular_velocity: rad/s = {name}.rotation.flow;
+                 let {name}.velocity = {name}.translation.flow; let {name}.angular_velocity: rad/s = \
+                 {name}.rotation.flow;
                  let {name}.momentum = {name}.linear.p; let {name}.angular_momentum = {name}.angular.p;
                  let {name}.p = {name}.linear.p; let {name}.h = {name}.angular.p;
                  let {name}.kinetic_energy: J = {name}.linear.energy + {name}.angular.energy;
@@ -205,7 +206,8 @@ impl Expansion<'_> {
                 &format!(
                     "let {name}.{point}.arm = {name}.orientation * ({name}.{point}.place - {name}.center);
                      let {name}.{point}.position = {name}.position + {name}.{point}.arm;
-                     let {name}.{point}.velocity = {name}.velocity + cross({name}.angular_velocity, {name}.{point}.arm);"
+                     let {name}.{point}.velocity = {name}.velocity + cross({name}.angular_velocity, \
+                     {name}.{point}.arm);"
                 ),
             );
         }

@@ -117,8 +117,8 @@ impl Piece {
 }
 
 impl Expansion<'_> {
-    /// What is seen of a shape of a contact at an end; `other` is the radius of what touches it, where it has one: of what
-    /// has no end of its own a piece is drawn that is large beside that.
+    /// What is seen of a shape of a contact at an end; `other` is the radius of what touches it, where it has one: of
+    /// what has no end of its own a piece is drawn that is large beside that.
     pub(super) fn draw_shape(
         &mut self,
         shape: &Touching,
@@ -226,8 +226,8 @@ impl Expansion<'_> {
 /// The axes of the ground.
 const IDENTITY: &str = "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]";
 
-/// Points of a curve through these, each with its argument first: as many as a picture needs, on cubics whose slopes at a
-/// point are those of the line through its neighbours.
+/// Points of a curve through these, each with its argument first: as many as a picture needs, on cubics whose slopes at
+/// a point are those of the line through its neighbours.
 pub(super) fn rounded(knots: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let slope = |k: usize| {
         let ([x, y], [u, v]) = (knots[k.saturating_sub(1)], knots[(k + 1).min(knots.len() - 1)]);

@@ -97,7 +97,8 @@ impl Explain for MechanismFault {
             F::Thin { name, word } => {
                 let word = with_article(word);
                 format!(
-                    "contact `{name}` cannot be of a point and {word}: both are thin, so neither can be inside the other"
+                    "contact `{name}` cannot be of a point and {word}: both are thin, so neither can be inside the \
+                    other"
                 )
             }
             F::LineAcross { name } => format!("a line along z stands on the plane of the shapes of contact `{name}`"),
@@ -144,10 +145,12 @@ impl Explain for MechanismFault {
             F::NoFreeAxis { .. } => {
                 "name a revolute, prismatic or cylindrical joint, a contact, or a 1-junction".to_owned()
             }
-            F::InSpace { .. } => "write `circle` for `sphere` and `line` for `plane` if they meet in a plane".to_owned(),
+            F::InSpace { .. } => "write `circle` for `sphere` and `line` for `plane` if they meet in a \
+                plane"
+                .to_owned(),
             F::ShapesApart { .. } => {
-                "in the plane a `circle` touches `circle`, `hole`, `line`, `segment`, `slot`, `arc` and `profile`, in space a \
-                 `sphere` touches `sphere`, `plane` and `hole`"
+                "in the plane a `circle` touches `circle`, `hole`, `line`, `segment`, `slot`, `arc` and `profile`, in \
+                 space a `sphere` touches `sphere`, `plane` and `hole`"
                     .to_owned()
             }
             F::Thin { .. } => "give the point a radius, such as `circle 1 mm`".to_owned(),

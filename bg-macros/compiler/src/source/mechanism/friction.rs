@@ -4,9 +4,9 @@
 //! s + (h - s) exp(-(v / w)^2) + r v against the flow v: s by `coulomb`, h by `static`, w by `stribeck`, r by
 //! `viscous`; at rest it holds h. With `creep c` it does not stick: the dry part is multiplied by v / sqrt(v^2 + c^2).
 //! Where shapes touch in space, v is a vector in the plane of contact; with `stiffness k` it sticks there by a spring:
-//! a C and an R with the same effort e share v, the spring's part z' = v - e |v| / f, where f is what the friction gives
-//! while it slides. At rest the spring holds, without creep; sliding, e is f along v. That is Dahl's law with its energy
-//! in a C (P. R. Dahl, Solid friction damping of mechanical vibrations, AIAA Journal 14 (1976) 1675-1682).
+//! a C and an R with the same effort e share v, the spring's part z' = v - e |v| / f, where f is what the friction
+//! gives while it slides. At rest the spring holds, without creep; sliding, e is f along v. That is Dahl's law with its
+//! energy in a C (P. R. Dahl, Solid friction damping of mechanical vibrations, AIAA Journal 14 (1976) 1675-1682).
 //! Source of the law: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, A survey of models, analysis tools and
 //! compensation methods for the control of machines with friction, Automatica 30 (1994) 1083, equation 6.
 
@@ -120,8 +120,8 @@ impl Expansion<'_> {
             self.fault(friction.name.span, &missing("stiffness", why));
         }
         if axis.is_rigid && friction.normal.is_none() {
-            let why = "the force of a rigid contact and its friction depend on each other, and may have no solution or two \
-                       (Painleve's paradox): write a `stiffness` in the place of `rigid`, or a force that is known";
+            let why = "the force of a rigid contact and its friction depend on each other, and may have no solution or \
+                       two (Painleve's paradox): write a `stiffness` in the place of `rigid`, or a force that is known";
             self.fault(friction.name.span, &missing("normal", why));
         }
         if let Some(stiffness) = &friction.stiffness {

@@ -303,8 +303,8 @@ impl Expansion<'_> {
         }
     }
 
-    /// The junction of the free translation, where something acts on it; of a slider with a length, which has no junction
-    /// in its middle, with that.
+    /// The junction of the free translation, where something acts on it; of a slider with a length, which has no
+    /// junction in its middle, with that.
     fn free_slide(&mut self, joint: &Joint, axis: Axis, a: &End, b: &End) {
         if !self.is_used(joint, "slide") {
             return;
@@ -437,7 +437,8 @@ impl Expansion<'_> {
                      let {name}.cosine: 1 = dot({a}.{across}_axis, {b}.{across}_axis);
                      let {name}.direction: rad = atan2({name}.sine, {name}.cosine);
                      let {name}.angle: rad = unwrapped({name}.sine, {name}.cosine, {name}.speed);
-                     let {name}.speed: rad/s = dot({a}.{along}_axis, {turns}.angular_velocity - {carries}.angular_velocity);"
+                     let {name}.speed: rad/s = dot({a}.{along}_axis, {turns}.angular_velocity - \
+                     {carries}.angular_velocity);"
                 ),
             );
         }

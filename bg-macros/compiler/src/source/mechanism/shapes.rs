@@ -268,12 +268,15 @@ impl Expansion<'_> {
                 "let {name}.middle: rad = 0.5 * ({from} + {to}); let {name}.half: rad = 0.5 * {opening};
                  let {name}.ahead: 1 = {axes}.x_axis * cos({name}.middle) + {axes}.y_axis * sin({name}.middle);
                  let {name}.aside: 1 = {axes}.y_axis * cos({name}.middle) - {axes}.x_axis * sin({name}.middle);
-                 let {name}.cx: m = dot({name}.ahead, {name}.between); let {name}.cy: m = dot({name}.aside, {name}.between);
+                 let {name}.cx: m = dot({name}.ahead, {name}.between); let {name}.cy: m = dot({name}.aside, \
+                 {name}.between);
                  let {name}.far: m = sqrt({name}.cx * {name}.cx + {name}.cy * {name}.cy + pow({CENTER} * {radius}, 2));
                  let {name}.past: m = {name}.far * cos({name}.half) - {name}.cx;
-                 let {name}.end: m = if {name}.cy < 0 {{ -{radius} * sin({name}.half) }} else {{ {radius} * sin({name}.half) }};
+                 let {name}.end: m = if {name}.cy < 0 {{ -{radius} * sin({name}.half) }} else {{ {radius} * \
+                 sin({name}.half) }};
                  let {name}.out: 1 = ({name}.far - {radius}) / {name}.far;
-                 let {name}.ux: m = if {name}.past < 0 {{ {name}.cx * {name}.out }} else {{ {name}.cx - {radius} * cos({name}.half) }};
+                 let {name}.ux: m = if {name}.past < 0 {{ {name}.cx * {name}.out }} else {{ {name}.cx - {radius} * \
+                 cos({name}.half) }};
                  let {name}.uy: m = if {name}.past < 0 {{ {name}.cy * {name}.out }} else {{ {name}.cy - {name}.end }};
                  let {name}.distance: m = sqrt(if {name}.past < 0 {{ pow({name}.far - {radius}, 2) }}
                      else {{ {name}.ux * {name}.ux + {name}.uy * {name}.uy }});
@@ -480,8 +483,8 @@ struct Polar {
     is_angle: bool,
 }
 
-/// What is round beside what it has the distance `NAME.distance` from, in the direction `NAME.apart`; or inside of what is
-/// as far around it as `play`.
+/// What is round beside what it has the distance `NAME.distance` from, in the direction `NAME.apart`; or inside of what
+/// is as far around it as `play`.
 fn around(name: &str, (first, second): (&Side, &Side), play: Option<&str>) -> Geometry {
     let (place, radius) = (second.end.position.clone(), second.radius());
     let (gap, direction) = match play {

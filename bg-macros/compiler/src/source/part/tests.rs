@@ -169,8 +169,11 @@ fn bodies_start_where_the_user_puts_them_and_grounds_are_one() {
 
 #[test]
 fn a_port_is_a_junction_or_another_name() {
-    let text = format!("{BAR} part Arm {{ part inner: Bar; port end = inner.tip; }}
-        graph G {{ part arm[2]: Arm; joint j: fixed (arm[0].end -> arm[1].end) {{ rigid; }} let x = arm[1].inner.turn.flow; }}");
+    let text = format!(
+        "{BAR} part Arm {{ part inner: Bar; port end = inner.tip; }}
+        graph G {{ part arm[2]: Arm; joint j: fixed (arm[0].end -> arm[1].end) {{ rigid; \
+        }} let x = arm[1].inner.turn.flow; }}"
+    );
     let items = flat(&text).join("\n");
     assert!(items.contains("(arm[0].inner.bar.end -> arm[1].inner.bar.end)"), "{items}");
     assert!(items.contains("let x = arm[1].inner.pin.spin.flow;"), "{items}");
@@ -179,7 +182,8 @@ fn a_port_is_a_junction_or_another_name() {
 #[test]
 fn what_a_part_observes_is_there_under_its_path() {
     let text = format!(
-        "{BAR} graph G {{ part a[2]: Bar; observe {{ a[0].angle; turn = 2 * a[1].angle; up = a[1].place.y; all of a[1] }}
+        "{BAR} graph G {{ part a[2]: Bar; observe {{ a[0].angle; turn = 2 * a[1].angle; up = a[1].place.y; \
+        all of a[1] }}
          scene S {{ observe {{ all of a; }} }} }}"
     );
     let items = flat(&text);
@@ -202,7 +206,8 @@ fn all_of_a_word_is_what_its_table_lists_first() {
     assert_eq!(*observed[0], "observe { b.position; b.orientation; b.momentum; b.angular_momentum }");
     assert_eq!(
         observed[1].replace("\n    ", " "),
-        "observe { pin.force; pin.moment; pin.gap; pin.angle; pin.speed; pin.travel; ball.force; ball.gap; j.flow; c.q; c.effort;\n}"
+        "observe { pin.force; pin.moment; pin.gap; pin.angle; pin.speed; pin.travel; ball.force; ball.gap; j.flow; \
+        c.q; c.effort;\n}"
     );
 }
 
@@ -337,7 +342,8 @@ fn a_part_that_no_graph_uses_is_looked_at_by_itself() {
 #[test]
 fn an_output_of_a_part_may_have_the_name_of_something_in_it() {
     let text = "part A { param k: 1 = 1; let a = k; observe { k = 2 * a } }
-        graph G { part x: A; let y = x.k; 1 j: translation; I m = 2; j -> m; observe { x.k; z = y } scene S { observe { all of x } } }";
+        graph G { part x: A; let y = x.k; 1 j: translation; I m = 2; j -> m; observe { x.k; \
+        z = y } scene S { observe { all of x } } }";
     assert_eq!(faults(text), "");
     let items = flat(text);
     assert!(items.contains(&"let y = x.k;".to_owned()), "an expression means the thing: {items:#?}");

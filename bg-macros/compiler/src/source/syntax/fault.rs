@@ -253,10 +253,14 @@ impl Explain for SyntaxFault {
             Self::IfWithoutElse => "write `else { ... }` after its block".into(),
             Self::ComparisonOutsideIf { .. } => "write `if a < b { 1 } else { 0 }`".into(),
             Self::SecondComparison { operator } if matches!(operator.as_str(), "||" | "|" | "or") => {
-                "write `max(b - a, d - c) > 0`, which holds where `a < b` or `c < d` does; of two units chain a second `if`".into()
+                "write `max(b - a, d - c) > 0`, which holds where `a < b` or `c < d` does; \
+                of two units chain a second `if`"
+                    .into()
             }
             Self::SecondComparison { .. } => {
-                "write `min(b - a, d - c) > 0`, which holds where both `a < b` and `c < d` do; of two units nest a second `if`".into()
+                "write `min(b - a, d - c) > 0`, which holds where both `a < b` and `c < d` do; \
+                of two units nest a second `if`"
+                    .into()
             }
             Self::Equality { .. } => "compare with `<`, `<=`, `>` or `>=`".into(),
             Self::Duplicate { clause } => format!("remove one {clause}"),

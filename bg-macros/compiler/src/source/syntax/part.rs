@@ -276,7 +276,8 @@ impl Cursor<'_> {
     /// Whether `[i in 0..20]` is ahead.
     fn has_range(&self) -> bool {
         let inside = self.brackets(0).map(|group| tokens(group.stream()));
-        matches!(inside.as_deref(), Some([_, second, ..]) if matches!(&second.kind, TokenKind::Word(word) if word == "in"))
+        matches!(inside.as_deref(), Some([_, second, ..]) if matches!(&second.kind,
+            TokenKind::Word(word) if word == "in"))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Units: `kg*m^2/s`, `1/s`, `1`.
 //!
-//! In: the tokens after a `:`, or after a number. Out: a [`Unit`]; after a `:` whether its symbols are known is for a later stage.
+//! In: the tokens after a `:`, or after a number. Out: a [`Unit`]; after a `:` whether its symbols are known is for a
+//! later stage.
 
 use proc_macro2::Delimiter;
 
@@ -30,7 +31,8 @@ impl Cursor<'_> {
     /// Whether the token `ahead` is the symbol of a unit, and neither calls a function nor begins a name with dots.
     fn is_symbol_of_unit(&self, ahead: usize) -> bool {
         let is_known = self.word_ahead(ahead).is_some_and(|word| bg_units::Unit::of_symbol(word).is_some());
-        let is_call = matches!(self.ahead(ahead + 1), Some(TokenKind::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
+        let is_call = matches!(self.ahead(ahead + 1),
+            Some(TokenKind::Group(group)) if group.delimiter() == Delimiter::Parenthesis);
         is_known && !is_call && !self.symbol_ahead(ahead + 1, ".")
     }
 

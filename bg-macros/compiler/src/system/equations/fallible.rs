@@ -185,7 +185,8 @@ mod tests {
     fn a_linear_law_that_is_used_the_other_way_round_divides() {
         let valve = |word: &str, law: &str| {
             fallible(&format!(
-                "param k: m^3/Pa = 1; Se p = 1; 0 j: hydraulic; C c = k; 1 v; {word} r = {law}; j -> c; j -> v -> r; R o = 1; 0 q: hydraulic; p -> q; q -> o;"
+                "param k: m^3/Pa = 1; Se p = 1; 0 j: hydraulic; C c = k; 1 v; {word} r = {law}; j -> c; j -> v -> r; \
+                R o = 1; 0 q: hydraulic; p -> q; q -> o;"
             ))
         };
         assert_eq!(valve("MR", "1 - t / 1"), ["MR r"]);

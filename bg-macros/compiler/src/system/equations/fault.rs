@@ -58,14 +58,16 @@ impl Explain for EquationFault {
                 members.join(" -> ")
             ),
             F::UndeterminedLoop { members, why } => format!(
-                "algebraic loop: {} need each other in a way that leaves their efforts and flows open, or has no solution: {why}",
+                "algebraic loop: {} need each other in a way that leaves their efforts and flows open, or has no \
+                solution: {why}",
                 members.join(", ")
             ),
             F::DependentStart { kind, name, by } => {
                 let symbol = kind.symbol();
                 let by = if by.is_empty() { "sources".to_owned() } else { by.join(", ") };
                 format!(
-                    "{symbol} `{name}` has no start of its own: it is in derivative causality, its state follows from {by}"
+                    "{symbol} `{name}` has no start of its own: it is in derivative causality, its state follows from \
+                    {by}"
                 )
             }
             F::PartlyDependentStart { kind, name, free } => {
@@ -83,8 +85,8 @@ impl Explain for EquationFault {
             F::DependentJumps { kind, name, element, condition } => {
                 let symbol = kind.symbol();
                 format!(
-                    "the state of {symbol} `{name}` is given by others and may jump where `{condition}` of `{element}` changes: that \
-                     would take an impulse"
+                    "the state of {symbol} `{name}` is given by others and may jump where `{condition}` of `{element}` \
+                     changes: that would take an impulse"
                 )
             }
             F::DependentOpen { members, why } => {
@@ -96,7 +98,8 @@ impl Explain for EquationFault {
             }
             F::NoEnergy { symbol, name } => {
                 format!(
-                    "the energy stored in {symbol} `{name}` is not known: its law has no integral that the compiler can find"
+                    "the energy stored in {symbol} `{name}` is not known: its law has no integral that the compiler \
+                    can find"
                 )
             }
             F::EnergyOfOtherLaw { symbol, name } => {
@@ -108,8 +111,8 @@ impl Explain for EquationFault {
                 format!("the energy given for {symbol} `{name}` jumps by {by} J where its law switches, at {at}")
             }
             F::EnergyNotCompared { symbol, name, points } => format!(
-                "the energy given for {symbol} `{name}` could not be compared with its law: at most of {points} points one \
-                 of them is not a finite number"
+                "the energy given for {symbol} `{name}` could not be compared with its law: at most of {points} points \
+                 one of them is not a finite number"
             ),
             F::DisplacementOfOtherFlow { name, is_sink } => {
                 let (what, symbol) = if *is_sink { ("gap", "rSe") } else { ("displacement", "C") };
@@ -132,7 +135,8 @@ impl Explain for EquationFault {
             }
             F::UnknownTurn { name } => {
                 format!(
-                    "the angle `{name}` is not known at the start: its sine or cosine depends on more than poses and parameters"
+                    "the angle `{name}` is not known at the start: its sine or cosine depends on more than poses and \
+                    parameters"
                 )
             }
         }
@@ -141,7 +145,8 @@ impl Explain for EquationFault {
     fn help(&self) -> String {
         match self {
             F::AlgebraicLoop { members, reactions } => format!(
-                "make {} compliant, or break the loop with a storage: bond a C or an I to one of its junctions, for example at {}",
+                "make {} compliant, or break the loop with a storage: bond a C or an I to one of its junctions, for \
+                example at {}",
                 reactions.first().map_or("the joint", String::as_str),
                 members.first().map_or("one of them", String::as_str)
             ),
@@ -159,8 +164,8 @@ impl Explain for EquationFault {
                 format!("let {} sit in front of `{name}`, or write the law without the comparison", between(*kind))
             }
             F::DependentOpen { members, .. } => format!(
-                "let a C and an R (a compliant coupling) sit in front of {}, or write the laws beside it as functions of the other \
-                 variable",
+                "let a C and an R (a compliant coupling) sit in front of {}, or write the laws beside it as functions \
+                 of the other variable",
                 members.first().map_or("it", String::as_str)
             ),
             F::NotLinear { .. } => "write it as a factor times the variable, or as `dot`, `cross` of it".to_owned(),
@@ -173,7 +178,8 @@ impl Explain for EquationFault {
                 "write law and energy so that they are finite for states of either sign, with `abs` or `if`".to_owned()
             }
             F::DisplacementOfOtherFlow { is_sink: true, .. } => {
-                "write a gap of the poses that this flow opens, or leave `at` out where there is none: a wheel that rolls"
+                "write a gap of the poses that this flow opens, or leave `at` out where there is none: a wheel that \
+                rolls"
                     .to_owned()
             }
             F::DisplacementOfOtherFlow { .. } => {

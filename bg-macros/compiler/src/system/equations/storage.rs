@@ -307,8 +307,10 @@ mod tests {
     /// A rod's orientation at the start and the place of its end, which is to be at (0, 1, 0).
     fn start(turned: &str) -> ([f64; 9], [f64; 3]) {
         let text = format!(
-            "graph G {{ param unit: m = 1; body rod {{ mass 1; inertia [1, 1, 1]; point end = [-0.6, 0.2, 0]; start end at [0, 1, 0];
-             start turned {turned}; }} observe {{ end: m = rod.position + rod.orientation * (unit * [-0.6, 0.2, 0]); }} }}"
+            "graph G {{ param unit: m = 1; body rod {{ mass 1; inertia [1, 1, 1]; point end = [-0.6, 0.2, 0]; \
+            start end at [0, 1, 0];
+             start turned {turned}; }} observe {{ end: m = rod.position + rod.orientation * (unit * [-0.6, 0.2, 0]); \
+             }} }}"
         );
         let source = syntax::parse(text.parse().expect("tokens")).expect("a graph");
         let equations = pipeline::derive(&source.graphs[0]).expect("equations").equations;

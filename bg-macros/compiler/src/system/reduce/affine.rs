@@ -198,7 +198,8 @@ mod tests {
         let graph = |x: &str| {
             format!(
                 "param k: N/m = 40; 1 a[3]: translation; position x of a start [{x}, 2, 3];
-                 I m = 2 start [1, 0, 0.3]; C s = k start [0.1, 0, 0]; a -> m; a -> s; observe {{ x: m = x; q: m = s.q; }}"
+                 I m = 2 start [1, 0, 0.3]; C s = k start [0.1, 0, 0]; a -> m; a -> s; observe {{ x: m = x; \
+                 q: m = s.q; }}"
             )
         };
         let scene = scene(&graph("guess(1)"), "");

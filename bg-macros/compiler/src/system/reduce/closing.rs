@@ -129,7 +129,8 @@ mod tests {
     #[test]
     fn a_chain_closes_no_loop() {
         let text = format!(
-            "{RODS} joint p: spherical (ground.O -> a.left) {{ rigid; }} joint q: spherical (a.right -> b.left) {{ rigid; }}"
+            "{RODS} joint p: spherical (ground.O -> a.left) {{ rigid; }} joint q: spherical (a.right -> b.left) {{ \
+            rigid; }}"
         );
         assert_eq!(arranged(&text), rows("p", None, 3).chain(rows("q", None, 3)).collect::<Vec<_>>());
     }
@@ -138,7 +139,8 @@ mod tests {
     #[test]
     fn a_joint_on_bodies_that_hang_already_may_close_a_loop() {
         let text = format!(
-            "{RODS} joint q: spherical (a.right -> b.left) {{ rigid; }} joint closes: spherical (ground.O -> a.left) {{ rigid; }}"
+            "{RODS} joint q: spherical (a.right -> b.left) {{ rigid; }} joint closes: spherical (ground.O -> a.left) \
+            {{ rigid; }}"
         );
         assert_eq!(arranged(&text), rows("q", None, 3).chain(rows("closes", Some(0), 3)).collect::<Vec<_>>());
     }
@@ -147,7 +149,8 @@ mod tests {
     fn rows_that_close_a_loop_come_last_with_their_numbers() {
         // The joint that stands second holds what the first one has hung on the ground.
         let text = format!(
-            "{RODS} joint p: spherical (ground.O -> a.left) {{ rigid; }} joint closes: spherical (ground.P -> a.right) {{ rigid; }}
+            "{RODS} joint p: spherical (ground.O -> a.left) {{ rigid; }} joint closes: spherical (ground.P -> a.right) \
+            {{ rigid; }}
              joint q: spherical (a.right -> b.left) {{ rigid; }}"
         );
         let expected: Vec<_> = rows("p", None, 3).chain(rows("q", None, 3)).chain(rows("closes", Some(0), 3)).collect();

@@ -435,9 +435,12 @@ mod tests {
 
     /// Equations in the plane with one link, and two lengths, squared, in ranges.
     fn link() -> StateEquations {
-        let graph = "param a: m^2 = 1.5, at least 1, at most 2; param b: m^2 = 4, at least 3.5; ground { point O = [0, 0, 0]; }
-            body bob { mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.5, 0]; start top at [0, 0, 0]; start turned rotation_z(0.3); }
-            joint pin: revolute z (ground.O -> bob.top) { stiffness 1e4; damping 10; tilt stiffness 10; tilt damping 1; }
+        let graph = "param a: m^2 = 1.5, at least 1, at most 2; param b: m^2 = 4, at least 3.5; \
+            ground { point O = [0, 0, 0]; }
+            body bob { mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.5, 0]; start top at [0, 0, 0]; \
+            start turned rotation_z(0.3); }
+            joint pin: revolute z (ground.O -> bob.top) { stiffness 1e4; damping 10; tilt stiffness 10; \
+            tilt damping 1; }
             observe { angle: rad = bob.angle; size: m^2 = a + b; }";
         scene(graph, "expect planar;").reduced
     }

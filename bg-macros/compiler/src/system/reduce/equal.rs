@@ -290,7 +290,8 @@ mod tests {
             format!(
                 "1 a: translation; 1 b: translation; 1 c: translation; 1 d: translation;
                  I x = 1 start 1; I y = 1; I u = 1 start 1; I v = 1; a -> x; b -> y; c -> u; d -> v;
-                 MSe e = 1 * y.p; MSe f = -1 * x.p; MSe g = -1 * v.p; MSe h = {factor} * u.p; e -> a; f -> b; g -> c; h -> d;
+                 MSe e = 1 * y.p; MSe f = -1 * x.p; MSe g = -1 * v.p; MSe h = {factor} * u.p; e -> a; f -> b; g -> c; \
+                 h -> d;
                  observe {{ x: m/s = a.flow; y: m/s = b.flow; u: m/s = c.flow; v: m/s = d.flow; }}"
             )
         };

@@ -57,8 +57,8 @@ impl Explain for ExpectationFault {
                 format!("no loop gives the orientation of body `{name}`: {kept}")
             }
             F::Independent { name, kept: None } => format!(
-                "no loop gives the orientation of body `{name}`: the gap of no rigid joint that closes a loop is linear in its \
-                 cosine and its sine"
+                "no loop gives the orientation of body `{name}`: the gap of no rigid joint that closes a loop is \
+                 linear in its cosine and its sine"
             ),
         }
     }
@@ -73,11 +73,10 @@ impl Explain for ExpectationFault {
             F::StateCount { .. } => "correct the number, or what the scene watches and tunes".to_owned(),
             F::UnknownBody { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownBody { .. } => "name a body of the graph".to_owned(),
-            F::Independent { .. } => {
-                "name a link that turns in the plane between two others; where a pin closes the loop, name both links, as in \
-                 `dependent coupler, rocker;`. Without it the loop is closed by projection"
-                    .to_owned()
-            }
+            F::Independent { .. } => "name a link that turns in the plane between two others; \
+                 where a pin closes the loop, name both links, as in `dependent coupler, rocker;`. Without it the loop \
+                 is closed by projection"
+                .to_owned(),
             F::AllReactions { kept, .. } => match kept {
                 Kept::Asked => "leave out `all reactions;`".to_owned(),
                 Kept::NothingRigid => "make joints rigid: `rigid joints;`".to_owned(),

@@ -109,7 +109,8 @@ mod tests {
     #[test]
     fn a_load_that_its_reaction_balances_moves_nothing() {
         let weight = "param m: kg = 2; param g: m/s^2 = 10; param k: N/m = 20;
-            1 j: translation; I i = m; C s = k start m * g / k; Se w = m * g; w -> j -> i; j -> s; observe { x: m = s.q; }";
+            1 j: translation; I i = m; C s = k start m * g / k; Se w = m * g; w -> j -> i; j -> s; \
+            observe { x: m = s.q; }";
         let balanced = scene(weight, "tune { m, g, k }");
         assert_eq!(balanced.words(&["i.p", "s.q"]), ["constant 0", "constant m*g/k"]);
         balanced.agrees();
@@ -126,7 +127,8 @@ mod tests {
         let at = |place: &str| {
             format!(
                 "ground {{ point O = [0, 0, 0]; }} body b {{ mass 2; inertia [1, 1, 1]; start at [{place}, 0, 0]; }}
-                 joint j: fixed (ground.O -> b) {{ stiffness 1e2; tilt stiffness 1e2; }} observe {{ x: m = b.position; }}"
+                 joint j: fixed (ground.O -> b) {{ stiffness 1e2; tilt stiffness 1e2; }} observe {{ x: m = b.position; \
+                 }}"
             )
         };
         let known = scene(&at("0"), "");

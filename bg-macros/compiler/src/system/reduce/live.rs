@@ -152,7 +152,8 @@ mod tests {
     /// A motor whose current turns the wheel's torque source one way: the wheel does not act back.
     const DOWNSTREAM: &str = "param k: N/m = 20; param c: N*s/m = 0.3;
         1 a: translation; I am = 2 start 1; C ak = k; R ar = c; a -> am; a -> ak; a -> ar;
-        1 b: translation; I bm = 3; R br(v) = if v < 0 { 1 * v } else { 2 * v }; MSe pull = 4 * ak.q; pull -> b -> bm; b -> br;";
+        1 b: translation; I bm = 3; R br(v) = if v < 0 { 1 * v } else { 2 * v }; MSe pull = 4 * ak.q; pull -> b -> bm; \
+        b -> br;";
 
     fn watching(observed: &str) -> Scene {
         scene(&format!("{DOWNSTREAM} observe {{ all: m/s = b.flow; }}"), &format!("observe {{ {observed} }}"))
@@ -247,7 +248,8 @@ mod tests {
     #[test]
     fn laws_that_can_fail_go_with_the_states_they_read() {
         let graph = "1 a: translation; I am = 2 start 1; R ar(v) = 1 * sqrt(v / 1); a -> am; a -> ar;
-            1 b: translation; I bm = 3 start 2; R br(v) = 1 / v; b -> bm; b -> br; observe { a: m/s = a.flow; b: m/s = b.flow; }";
+            1 b: translation; I bm = 3 start 2; R br(v) = 1 / v; b -> bm; b -> br; observe { a: m/s = a.flow; \
+            b: m/s = b.flow; }";
         let elements = |observed: &str| {
             let reduced = scene(graph, &format!("observe {{ {observed} }}")).reduced;
             reduced.fallible.into_iter().map(|law| law.element).collect::<Vec<_>>()

@@ -189,8 +189,8 @@ pub fn for_scene(
 struct Jointed {
     equations: StateEquations,
     report: Report,
-    /// Whether more than a few joints move in space, as none of their coordinates is constant: the matrix of all reactions
-    /// of bodies that keep their states would take seconds and more to factor.
+    /// Whether more than a few joints move in space, as none of their coordinates is constant: the matrix of all
+    /// reactions of bodies that keep their states would take seconds and more to factor.
     is_long: bool,
 }
 

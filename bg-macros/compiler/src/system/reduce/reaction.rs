@@ -153,8 +153,8 @@ fn accelerations(equations: &mut StateEquations, reactions: &[Reaction], rates: 
     reactions.iter().zip(rates).map(acceleration).collect()
 }
 
-/// By which parts of a flow, 1/s, and of its gap, 1/s^2, the rate of the flow falls where it is held; those of rigid joints
-/// are Baumgarte's.
+/// By which parts of a flow, 1/s, and of its gap, 1/s^2, the rate of the flow falls where it is held; those of rigid
+/// joints are Baumgarte's.
 pub(super) fn decay(of: &Reaction, baumgarte: f64) -> [f64; 2] {
     match (&of.switched, of.rebound) {
         (_, Some(_)) => [2.0 * RETURN, RETURN * RETURN],
@@ -183,7 +183,8 @@ mod tests {
     fn a_rigid_pendulum_has_the_reactions_of_the_textbook() {
         let graph = format!(
             "{BOB} joint pivot: revolute z (ground.O -> bob.top) {{ rigid; }}
-             observe {{ angle: rad = pivot.direction; w: rad/s = pivot.speed; f: N = pivot.force; gap: m = pivot.gap; }}"
+             observe {{ angle: rad = pivot.direction; w: rad/s = pivot.speed; f: N = pivot.force; gap: m = pivot.gap; \
+             }}"
         );
         let scene = scene(&graph, "all reactions;");
         assert_eq!(scene.reduced.states.len(), 7, "{}", scene.report);
@@ -220,7 +221,8 @@ mod tests {
     #[test]
     fn reactions_out_of_the_plane_need_no_solution() {
         let graph = format!(
-            "{BOB} body rod {{ mass 1; inertia [0.1, 0.01, 0.1]; point top = [0, 0.2, 0]; start top at [0.5 * sin(0.7) * 0, -0.5, 0]; }}
+            "{BOB} body rod {{ mass 1; inertia [0.1, 0.01, 0.1]; point top = [0, 0.2, 0]; \
+            start top at [0.5 * sin(0.7) * 0, -0.5, 0]; }}
              joint pivot: revolute z (ground.O -> bob.top) {{ rigid; }}
              observe {{ p: m = bob.position; q: m = rod.position; f: N = pivot.force; }}"
         );
@@ -273,7 +275,8 @@ mod tests {
     #[test]
     fn how_something_leaves_a_stop_is_by_the_parameters_of_the_scene() {
         let graph = "param a: kg = 2; param e: 1 = 0.25; 1 fall: translation; I ball = a; Se weight = -20;
-            weight -> fall -> ball; stop floor on fall { at least 0; start 0.5; restitution e; } observe { y: m = floor.place; }";
+            weight -> fall -> ball; stop floor on fall { at least 0; start 0.5; restitution e; \
+            } observe { y: m = floor.place; }";
         for (tuned, expected) in [("a", 0.25), ("e", 0.7)] {
             let of = scene(graph, &format!("tune {{ {tuned} }}")).reduced;
             let environment = Environment { parameters: &[0.7], ..Environment::default() };

@@ -164,7 +164,8 @@ impl std::fmt::Display for Report {
         let closed = where_any(of(|fate| matches!(fate, Fate::Closed(_))), "closed");
         writeln!(
             f,
-            "{} states: {} constant; {} equal up to sign; {} recovered;{joined}{closed} {} unwatched; {} integrated; {} for outputs only",
+            "{} states: {} constant; {} equal up to sign; {} recovered;{joined}{closed} {} unwatched; {} integrated; \
+            {} for outputs only",
             self.fates.len(),
             of(|fate| matches!(fate, Fate::Constant(_))),
             of(|fate| matches!(fate, Fate::Equal(_))),

@@ -235,7 +235,8 @@ pub(super) fn oscillator(name: &str, [mass, stiffness, damping]: [&str; 3], [mom
 /// Two masses with a spring in between, `i` and `j` names of 1-junctions.
 pub(super) fn coupling(name: &str, i: &str, j: &str, stiffness: &str) -> String {
     format!(
-        "0 {name}z: translation; 1 {name}s: translation; C {name} = {stiffness}; {i} -> {name}z -> {j}; {name}z -> {name}s -> {name};\n"
+        "0 {name}z: translation; 1 {name}s: translation; C {name} = {stiffness}; {i} -> {name}z -> {j}; \
+        {name}z -> {name}s -> {name};\n"
     )
 }
 
@@ -292,7 +293,8 @@ fn the_report_counts_every_state_once_and_each_stage() {
         + &oscillator("b", ["2", "k", ""], ["0", "-0.1"])
         + &oscillator("c", ["2", "k", ""], ["0", "0"])
         + &oscillator("d", ["3", "k", ""], ["1", "0"])
-        + "param k: N/m = 50; observe { a: m/s = a.flow; b: m/s = b.flow; c: m/s = c.flow; e: J = integral(am.power); }";
+        + "param k: N/m = 50; observe { a: m/s = a.flow; b: m/s = b.flow; c: m/s = c.flow; e: J = integral(am.power); \
+            }";
     let scene = scene(&graph, "tune { k }");
     let text = scene.report.to_string();
     let first = text.lines().next().expect("a summary");

@@ -91,7 +91,8 @@ mod tests {
         body wheel { mass 1; inertia [0.1, 0.1, 0.1]; start turned rotation_z(0.5); start spin [0, 0, 8]; }
         joint pin: cylindrical z (ground.O -> wheel) { stiffness 1e3; tilt stiffness 10; }
         drive coil on pin torque = -k * pin.angle;
-        observe { angle: rad = pin.angle; body: rad = wheel.angle; direction: rad = pin.direction; power: W = coil.power }";
+        observe { angle: rad = pin.angle; body: rad = wheel.angle; direction: rad = pin.direction; \
+        power: W = coil.power }";
 
     fn small_angles(scene: &Scene) -> usize {
         let outputs: Vec<_> = scene.reduced.outputs.iter().map(|output| output.value).collect();
@@ -177,7 +178,8 @@ mod tests {
 
     #[test]
     fn a_junction_has_the_displacement_that_its_flow_has_made() {
-        let graph = "param m: kg = 2; param soft: N/m = 0.001; 1 slide: translation; I body = m start 3; param hard: N/m = 8; MSe spring = -hard * slide.displacement;
+        let graph = "param m: kg = 2; param soft: N/m = 0.001; 1 slide: translation; I body = m start 3; \
+            param hard: N/m = 8; MSe spring = -hard * slide.displacement;
             C other = soft start 0.1; slide -> body; slide -> other; spring -> slide;
             observe { x: m = slide.displacement; q: m = other.q }";
         let scene = scene(graph, "tune { m }");

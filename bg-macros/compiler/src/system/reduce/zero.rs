@@ -1,10 +1,10 @@
 //! Whether expressions are zero.
 //!
 //! In: expressions of parameters, states and numbers. Out: whether they are zero whatever these are. Method: the
-//! polynomial identity; where that grows too large, as for the start of a long chain of turned bodies, or other functions
-//! are in it, as the sine of an arcsine, values at places drawn at random, of many magnitudes: an analytic function that
-//! is zero at them is zero wherever it is defined without a gap between, but for a set of places of measure zero
-//! (Schwartz, Journal of the ACM 27, 1980, for polynomials).
+//! polynomial identity; where that grows too large, as for the start of a long chain of turned bodies, or other
+//! functions are in it, as the sine of an arcsine, values at places drawn at random, of many magnitudes: an analytic
+//! function that is zero at them is zero wherever it is defined without a gap between, but for a set of places of
+//! measure zero (Schwartz, Journal of the ACM 27, 1980, for polynomials).
 
 use crate::expr::{Environment, Function, Id, Node, Pool, Symbol, evaluate, magnitudes, same_polynomial};
 use crate::random::Random;
@@ -32,8 +32,8 @@ pub(super) fn value(pool: &Pool, of: Id) -> Option<f64> {
     pool.symbols(&[of]).is_empty().then(|| evaluate(pool, &[of], &Environment::default())[0])
 }
 
-/// Whether an analytic function of parameters, states and coordinates is zero at places drawn at random; none where it is
-/// no such function, or hardly anywhere defined.
+/// Whether an analytic function of parameters, states and coordinates is zero at places drawn at random; none where it
+/// is no such function, or hardly anywhere defined.
 pub(super) fn vanishes_at_places(pool: &mut Pool, of: Id) -> Option<bool> {
     let mut values: [Vec<f64>; 3] = [const { Vec::new() }; 3];
     for symbol in pool.symbols(&[of]) {

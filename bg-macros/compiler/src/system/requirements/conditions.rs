@@ -94,7 +94,8 @@ fn numbers(value: &Value, allowed: Allowed) -> Vec<Condition> {
         Allowed::Invertible => (
             true,
             "must be above 0, since its flow follows from its effort",
-            "give a value above 0; to give power on purpose, write a law of its variable, `R r(effort e) = ...`, or a source",
+            "give a value above 0; to give power on purpose, write a law of its variable, `R r(effort e) = ...`, or a \
+            source",
         ),
         _ => (false, "must not be negative", "give a value that is not negative; 0 is as if it were not there"),
     };

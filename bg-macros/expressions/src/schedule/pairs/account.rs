@@ -1,8 +1,8 @@
 //! What a choice of pairs costs, kept while it changes.
 //!
 //! In: the operations, a choice. Out: its cost and the changes that can be made to it and taken back. What counts:
-//! operations, values gathered, values taken out of pairs, results written; where zeros keep their signs also terms that
-//! get another sign. A change costs or saves only where its operations and their users are.
+//! operations, values gathered, values taken out of pairs, results written; where zeros keep their signs also terms
+//! that get another sign. A change costs or saves only where its operations and their users are.
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,12 +1,12 @@
 //! Pairs of operations: straight-line code for vectors of two numbers.
 //!
 //! In: a [`Routine`]. Out: a [`Paired`] with the same results, each rounded as before; after a [`Search::Thorough`] the
-//! sign of a zero may differ. Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind whose
-//! operands belong together become one operation on pairs, which costs what one on numbers does. `nodes` frees the
-//! routine from signs, `choose` says which operations go together and `anneal` improves on it, or `trees` says so in a
-//! hundredth of the time; `account` keeps what a choice costs, `signs` says with which sign each value is held, `lower`
-//! writes the steps. Method: superword level parallelism (S. Larsen, S. Amarasinghe, PLDI 2000), grown from neighbours
-//! among the states and the results.
+//! sign of a zero may differ. Mechanisms repeat themselves, in x and y, at each joint: operations of the same kind
+//! whose operands belong together become one operation on pairs, which costs what one on numbers does. `nodes` frees
+//! the routine from signs, `choose` says which operations go together and `anneal` improves on it, or `trees` says so
+//! in a hundredth of the time; `account` keeps what a choice costs, `signs` says with which sign each value is held,
+//! `lower` writes the steps. Method: superword level parallelism (S. Larsen, S. Amarasinghe, PLDI 2000), grown from
+//! neighbours among the states and the results.
 
 mod account;
 mod anneal;

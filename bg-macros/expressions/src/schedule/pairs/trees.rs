@@ -1,9 +1,9 @@
 //! Which operations go together, found in little time.
 //!
 //! In: the operations. Out: pairs of them. Method: superword level parallelism as compilers seek it (S. Larsen, S.
-//! Amarasinghe, PLDI 2000; V. Porpodas, R. Rocha, L. Goes, PACT 2018 for looking ahead): from neighbours among the results
-//! and the states, and from the users of pairs, whole trees of operands are joined as far as they are alike. What of a
-//! tree does not pay is parted again, from the leaves on, and the tree is left where nothing of it pays.
+//! Amarasinghe, PLDI 2000; V. Porpodas, R. Rocha, L. Goes, PACT 2018 for looking ahead): from neighbours among the
+//! results and the states, and from the users of pairs, whole trees of operands are joined as far as they are alike.
+//! What of a tree does not pay is parted again, from the leaves on, and the tree is left where nothing of it pays.
 
 use super::Zeros;
 use super::account::{Change, State};
@@ -117,8 +117,8 @@ impl State<'_> {
         if swapped.1 > straight.1 { swapped } else { straight }
     }
 
-    /// How alike two values are: pairs most, then operations that can be joined, with what they need as far as one looks
-    /// ahead.
+    /// How alike two values are: pairs most, then operations that can be joined, with what they need as far as one
+    /// looks ahead.
     fn likeness(&self, values: [usize; 2], ahead: u32) -> u32 {
         if self.is_pair(values) {
             4

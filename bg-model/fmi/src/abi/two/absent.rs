@@ -23,15 +23,23 @@ macro_rules! nothing {
 }
 
 nothing! {
-    fmi2GetInteger(_references: *const u32, count: usize, _values: *mut c_int) where count == 0, "variables of the type Integer";
-    fmi2SetInteger(_references: *const u32, count: usize, _values: *const c_int) where count == 0, "variables of the type Integer";
-    fmi2GetBoolean(_references: *const u32, count: usize, _values: *mut Boolean) where count == 0, "variables of the type Boolean";
-    fmi2SetBoolean(_references: *const u32, count: usize, _values: *const Boolean) where count == 0, "variables of the type Boolean";
-    fmi2GetString(_references: *const u32, count: usize, _values: *mut *const c_char) where count == 0, "variables of the type String";
-    fmi2SetString(_references: *const u32, count: usize, _values: *const *const c_char) where count == 0, "variables of the type String";
-    fmi2SetRealInputDerivatives(_references: *const u32, count: usize, _orders: *const c_int, _values: *const f64) where count == 0,
+    fmi2GetInteger(_references: *const u32, count: usize, _values: *mut c_int) where count == 0, "variables of the \
+        type Integer";
+    fmi2SetInteger(_references: *const u32, count: usize, _values: *const c_int) where count == 0, "variables of the \
+        type Integer";
+    fmi2GetBoolean(_references: *const u32, count: usize, _values: *mut Boolean) where count == 0, "variables of the \
+        type Boolean";
+    fmi2SetBoolean(_references: *const u32, count: usize, _values: *const Boolean) where count == 0, "variables of the \
+        type Boolean";
+    fmi2GetString(_references: *const u32, count: usize, _values: *mut *const c_char) where count == 0, "variables of \
+        the type String";
+    fmi2SetString(_references: *const u32, count: usize, _values: *const *const c_char) where count == 0, "variables \
+        of the type String";
+    fmi2SetRealInputDerivatives(_references: *const u32, count: usize, _orders: *const c_int,
+        _values: *const f64) where count == 0,
         "inputs whose derivatives it takes";
-    fmi2GetRealOutputDerivatives(_references: *const u32, count: usize, _orders: *const c_int, _values: *mut f64) where count == 0,
+    fmi2GetRealOutputDerivatives(_references: *const u32, count: usize, _orders: *const c_int,
+        _values: *mut f64) where count == 0,
         "derivatives of outputs with respect to time";
     fmi2CancelStep() where false, "steps that go on after their call";
     fmi2GetStatus(_kind: c_int, _status: *mut Status) where false, "steps that go on after their call";

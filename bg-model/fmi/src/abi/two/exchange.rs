@@ -29,7 +29,8 @@ as_in_three! {
         "Reads the derivatives of the continuous states.";
     fmi2GetEventIndicators is exchange::fmi3GetEventIndicators, (indicators: *mut f64, count: usize),
         "Reads the event indicators.";
-    fmi2GetNominalsOfContinuousStates is exchange::fmi3GetNominalsOfContinuousStates, (nominals: *mut f64, count: usize),
+    fmi2GetNominalsOfContinuousStates is exchange::fmi3GetNominalsOfContinuousStates, (nominals: *mut f64,
+        count: usize),
         "The nominal values of the continuous states.";
 }
 

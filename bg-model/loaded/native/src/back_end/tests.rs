@@ -57,8 +57,8 @@ fn program(random: &mut Rng) -> Program {
     Program { operations, results, pairing: Pairing::None }
 }
 
-/// A program twice, in the two axes of a plane: what is read stands side by side, some operations mix both axes, some are
-/// others in the second.
+/// A program twice, in the two axes of a plane: what is read stands side by side, some operations mix both axes, some
+/// are others in the second.
 fn in_a_plane(random: &mut Rng) -> Program {
     let one = program(random);
     let mut axis = |operand: Operand, axis: u32| {

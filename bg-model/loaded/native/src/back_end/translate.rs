@@ -1,9 +1,9 @@
 //! Steps to instructions.
 //!
-//! In: [`Steps`]. Out: the body of one function of five addresses: what is fixed, the states, what is read, the branches,
-//! where results go. Method: one instruction of Cranelift for each operation on numbers or on pairs, in the order of
-//! [`Steps::order`]; inputs are read where they are used, and again where the last use is long ago; a result is written
-//! as soon as it is there; sine and cosine of one angle are one call.
+//! In: [`Steps`]. Out: the body of one function of five addresses: what is fixed, the states, what is read, the
+//! branches, where results go. Method: one instruction of Cranelift for each operation on numbers or on pairs, in the
+//! order of [`Steps::order`]; inputs are read where they are used, and again where the last use is long ago; a result
+//! is written as soon as it is there; sine and cosine of one angle are one call.
 
 use std::collections::HashMap;
 

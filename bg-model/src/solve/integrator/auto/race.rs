@@ -40,9 +40,9 @@ const AHEAD: f64 = 1.05;
 const LOOKS: u32 = 2;
 const PROMISE: f64 = 1.1;
 const PROMISE_OF_SERIES: f64 = 1.3;
-/// The part of their errors that counts for Nystrom and the series: at the same tolerance runs by them err by a thirtieth
-/// of those by DOP853, over 24 models, and in nine of ten hardly by more (`docs/benchmarks/errors.md`). So who is ahead
-/// errs like the others.
+/// The part of their errors that counts for Nystrom and the series: at the same tolerance runs by them err by a
+/// thirtieth of those by DOP853, over 24 models, and in nine of ten hardly by more (`docs/benchmarks/errors.md`). So
+/// who is ahead errs like the others.
 const COUNTED: f64 = 0.2;
 /// A method whose step errs by so many times what is allowed is not looked at again in this rest.
 const FAR_OFF: f64 = 100.0;

@@ -7,9 +7,10 @@
 //! as many sweeps as there are stages (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration (2006), section
 //! VI.4; W. W. Hager, Numer. Math. 87 (2000)). An integral over the run is the step's quadrature h sum b_i g(x_i).
 //!
-//! As forward slopes do, it divides a step into equal parts: where DOP853 is far too inexact, which of a run by DOP853 it
-//! never is, and where the weights would be. A state at rest says nothing about these: a step by which DOP853 is unstable
-//! leaves it at rest. So from time to time, and before longer steps, a step is followed in twice as many parts as well.
+//! As forward slopes do, it divides a step into equal parts: where DOP853 is far too inexact, which of a run by DOP853
+//! it never is, and where the weights would be. A state at rest says nothing about these: a step by which DOP853 is
+//! unstable leaves it at rest. So from time to time, and before longer steps, a step is followed in twice as many parts
+//! as well.
 
 use pulp::NullaryFnOnce;
 
@@ -21,9 +22,9 @@ use crate::solve::statistics::Statistics;
 
 /// Parts of a step at most.
 const MOST_PARTS: u32 = 1 << 16;
-/// The estimated error of a part, in parts of what is allowed, from which on it is divided; also that of the weights, in
-/// parts of the relative tolerance. A run by DOP853 has states of none above 1, or hardly more where a projection takes the
-/// error away.
+/// The estimated error of a part, in parts of what is allowed, from which on it is divided; also that of the weights,
+/// in parts of the relative tolerance. A run by DOP853 has states of none above 1, or hardly more where a projection
+/// takes the error away.
 const FAR: f64 = 100.0;
 /// So many steps of parts that are not longer follow without another look at the weights.
 const LOOK: u32 = 8;
@@ -65,8 +66,8 @@ pub(super) struct Back<'a> {
     /// The model in numbers with slopes, for what has no sweeps.
     pub lifted: Lifted,
     scale: Scale,
-    /// By how much weights in parts of a step may differ from those in twice as many, relatively. Of a run by DOP853 half of
-    /// the digits have to agree: they are exact for its steps, unless these are unstable.
+    /// By how much weights in parts of a step may differ from those in twice as many, relatively. Of a run by DOP853
+    /// half of the digits have to agree: they are exact for its steps, unless these are unstable.
     near: f64,
     method: Dop853,
     arch: Arch,

@@ -98,7 +98,8 @@ pub fn drawing(fault: impl std::fmt::Display) -> FigureError {
     FigureError::Drawing(fault.to_string())
 }
 
-/// The body with the opacity of each shape as that of its fill and line, which every reader knows; not where it is whole.
+/// The body with the opacity of each shape as that of its fill and line, which every reader knows; not where it is
+/// whole.
 fn opacity(body: &str) -> String {
     let mut parts = body.replace(" opacity=\"1\"", "");
     while let Some((before, after)) = parts.split_once(" opacity=\"") {
@@ -113,8 +114,8 @@ fn finish(svg: &str, heading: &str) -> String {
     let (_, body) = svg.split_once('>').expect("the backend starts with the svg tag");
     let (width, height) = (WIDTH * UNITS, HEIGHT * UNITS);
     let opening = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {width} {height}\" \
-         role=\"img\" aria-label=\"{heading}\">"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{WIDTH}\" height=\"{HEIGHT}\" viewBox=\"0 0 {width} \
+         {height}\" role=\"img\" aria-label=\"{heading}\">"
     );
     let joins = "<style>polyline{stroke-linejoin:round;stroke-linecap:round}</style>";
     format!("{opening}\n{}{joins}\n{}", dark_style(), set(&opacity(body))).replace(UNDERLINE, "_")

@@ -88,8 +88,10 @@ mod tests {
 
     #[test]
     fn a_polyline_becomes_a_path_through_the_same_points() {
-        let svg = "<svg><style>polyline{a:b}</style><polyline fill=\"none\" points=\"10,20 13,15 13,16 \" stroke=\"red\"/><polyline points=\"1.5,2\"/></svg>";
-        let expected = "<svg><style>path{a:b}</style><path fill=\"none\" d=\"M10 20l3-5 0 1\" stroke=\"red\"/><polyline points=\"1.5,2\"/></svg>";
+        let svg = "<svg><style>polyline{a:b}</style><polyline fill=\"none\" points=\"10,20 13,15 13,16 \" \
+            stroke=\"red\"/><polyline points=\"1.5,2\"/></svg>";
+        let expected = "<svg><style>path{a:b}</style><path fill=\"none\" d=\"M10 20l3-5 0 1\" \
+            stroke=\"red\"/><polyline points=\"1.5,2\"/></svg>";
         assert_eq!(compact(svg), expected);
         assert_eq!(compact("<polyline points=\"7,8\"/>"), "<path d=\"M7 8\"/>");
         assert_eq!(compact("no drawing"), "no drawing");

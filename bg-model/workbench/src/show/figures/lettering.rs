@@ -1,9 +1,9 @@
 //! Texts that every reader of SVG sets in the same place.
 //!
 //! In: SVG of the drawing crate. Out: the same with all of a text's places and sizes as plain numbers, and with the
-//! index of `h_2x`, `C_4y` and the like as a subscript. Of what the drawing crate writes, LibreOffice passes over a `dy`
-//! in em. Of subscripts, CairoSVG takes a size in percent to be one of the whole picture, rsvg leaves out a blank after
-//! one, and CairoSVG and LibreOffice set those of a centred line over what comes after them.
+//! index of `h_2x`, `C_4y` and the like as a subscript. Of what the drawing crate writes, LibreOffice passes over a
+//! `dy` in em. Of subscripts, CairoSVG takes a size in percent to be one of the whole picture, rsvg leaves out a blank
+//! after one, and CairoSVG and LibreOffice set those of a centred line over what comes after them.
 
 /// What a subscript is lowered by and how large it is, in parts of the letters before it.
 const LOWERED: f64 = 0.25;

@@ -110,13 +110,13 @@ impl Balance {
         let share = if moved > 0.0 { rest / moved } else { 0.0 };
         if self.dissipated.is_empty() {
             return format!(
-                "Supplied less stored is {rest:.2e} J at most, {share:.1e} of the largest energy: what is dissipated, which no \
-                 output says, and the error of the integration."
+                "Supplied less stored is {rest:.2e} J at most, {share:.1e} of the largest energy: what is dissipated, \
+                 which no output says, and the error of the integration."
             );
         }
         format!(
-            "Supplied less stored less dissipated is {rest:.2e} J at most, {share:.1e} of the largest energy: the error of the \
-             integration."
+            "Supplied less stored less dissipated is {rest:.2e} J at most, {share:.1e} of the largest energy: the \
+             error of the integration."
         )
     }
 }

@@ -195,8 +195,8 @@ impl Data {
             if shown < all { format!("{shown} of {all} samples are shown") } else { format!("{shown} samples") };
         let of_rows = if rows < of_csv { format!("{rows} of {of_csv} rows") } else { format!("all {rows} rows") };
         format!(
-            "{thinned}, among them {of_rows} of the CSV file. Press or drag in a chart to set the time; Ctrl and the wheel zoom, \
-             a double click shows all."
+            "{thinned}, among them {of_rows} of the CSV file. Press or drag in a chart to set the time; \
+             Ctrl and the wheel zoom, a double click shows all."
         )
     }
 

@@ -50,8 +50,8 @@ pub fn stage(page: &mut String, is_moving: bool, is_live: bool, note: &str) {
     write_into(
         page,
         format_args!(
-            "<section id=\"charts\"><h2>Outputs <small>over t in s</small></h2><div class=\"charts\" id=\"chart-list\"></div>\
-             <p class=\"note\" id=\"samples\">{}</p></section>\n</div>\n",
+            "<section id=\"charts\"><h2>Outputs <small>over t in s</small></h2><div class=\"charts\" \
+             id=\"chart-list\"></div><p class=\"note\" id=\"samples\">{}</p></section>\n</div>\n",
             escaped(note)
         ),
     );

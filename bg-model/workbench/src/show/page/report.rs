@@ -90,8 +90,8 @@ pub fn page(report: &Report<'_>) -> String {
 }
 
 /// The page of a run that another page shows in a frame: that page's folder has style and script, `report.css`,
-/// `beside.js` and `report.js`. Where there is an `order`, which made the run, that page itself runs the model again, and
-/// the machine moves at once.
+/// `beside.js` and `report.js`. Where there is an `order`, which made the run, that page itself runs the model again,
+/// and the machine moves at once.
 #[must_use]
 pub fn page_beside(report: &Report<'_>, order: Option<&Order>) -> String {
     let text = |(id, json): &(&str, String)| {
@@ -143,7 +143,8 @@ fn put_together(
         sections.into_iter().filter(|(is_there, ..)| *is_there).map(|(_, anchor, name)| (anchor, name)).collect();
 
     let mut page = String::from("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n";
+    page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" \
+        href=\"data:,\">\n";
     write_into(&mut page, format_args!("<title>{}</title>\n", escaped(&report.texts.title)));
     write_into(&mut page, format_args!("{style}</head>\n<body>\n"));
     html::head(&mut page, report, &links);

@@ -121,7 +121,8 @@ impl Record {
             text += &format!("{name} = {value:?}\n");
         }
         if !values.is_empty() {
-            text += "\n# All parameters as they were. A later run has the defaults of its time, and those of [parameters].\n\
+            text += "\n# All parameters as they were. A later run has the defaults of its time, and those of \
+                [parameters].\n\
                      [values]\n";
         }
         for (name, Quantity { value, unit }) in values {

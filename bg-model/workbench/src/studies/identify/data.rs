@@ -1,7 +1,7 @@
 //! Measured columns: a CSV file with gaps, matched to a model's outputs.
 //!
-//! In: a file whose first column is `t`, which output each column measures; units may stand in the heads, as in `t [ms]`. Out: values at instants, none where a
-//! field is empty or `nan`.
+//! In: a file whose first column is `t`, which output each column measures; units may stand in the heads, as in `t
+//! [ms]`. Out: values at instants, none where a field is empty or `nan`.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -83,7 +83,8 @@ pub enum DataError {
     )]
     NothingMeasured(String),
     /// A column that is spoken of is not there.
-    #[error("it has no column `{name}`{}", .near.as_ref().map_or_else(String::new, |near| format!("; did you mean `{near}`?")))]
+    #[error("it has no column `{name}`{}", .near.as_ref().map_or_else(String::new, |near| format!("; \
+        did you mean `{near}`?")))]
     NoColumn {
         /// The name.
         name: String,

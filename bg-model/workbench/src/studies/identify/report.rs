@@ -14,8 +14,8 @@ use crate::files::table::{aligned, table};
 /// Correlations above this are pointed out.
 const STRONG: f64 = 0.95;
 /// What to do where what is left is no noise.
-const ADVICE: &str = "so the parameters have no intervals: this model or this minimum is not the right one; fit what else may \
-                      differ, or start elsewhere with --set";
+const ADVICE: &str = "so the parameters have no intervals: this model or this minimum is not the right one; \
+                      fit what else may differ, or start elsewhere with --set";
 
 /// The report.
 #[must_use]

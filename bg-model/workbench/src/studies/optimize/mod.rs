@@ -1,7 +1,7 @@
 //! Optima: which parameters make a number of a run least, subject to others.
 //!
-//! In: texts of goals, requirements and variables, a scene with its values. Out: a [`Sought`], and what several searches
-//! on all cores have found. The searches are those of `bg-analysis`.
+//! In: texts of goals, requirements and variables, a scene with its values. Out: a [`Sought`], and what several
+//! searches on all cores have found. The searches are those of `bg-analysis`.
 
 pub mod report;
 
@@ -176,8 +176,8 @@ fn followed_cheaply(request: &Request) -> Request {
     Request { method, ..request.clone() }
 }
 
-/// The variable that `NAME` or `NAME=LOWER..UPPER` gives; it starts at its value, or where that is outside of its bounds in
-/// their middle.
+/// The variable that `NAME` or `NAME=LOWER..UPPER` gives; it starts at its value, or where that is outside of its
+/// bounds in their middle.
 fn variable(scene: &Scene, values: &Values, text: &str) -> Result<Variable, String> {
     let (name, range) = text.split_once('=').map_or((text, None), |(name, range)| (name, Some(range)));
     let name = name.trim();

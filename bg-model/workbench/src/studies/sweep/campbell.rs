@@ -155,8 +155,8 @@ impl Campbell {
         }
         if self.is_level() {
             text += &format!(
-                "\nno frequency depends on `{}`; at an equilibrium nothing moves: --start model has the speeds that the \
-                 machine starts with\n",
+                "\nno frequency depends on `{}`; at an equilibrium nothing moves: --start model has the speeds that \
+                 the machine starts with\n",
                 by.name
             );
         }

@@ -87,7 +87,8 @@ pub enum DesignError {
     Many,
     /// A Sobol sequence that ends before.
     #[error(
-        "a Sobol sequence has at most {} points in {} parameters; give fewer, or a [latin_hypercube]", MOST_SOBOL[0], MOST_SOBOL[1]
+        "a Sobol sequence has at most {} points in {} parameters; give fewer, or a \
+        [latin_hypercube]", MOST_SOBOL[0], MOST_SOBOL[1]
     )]
     Sobol,
 }

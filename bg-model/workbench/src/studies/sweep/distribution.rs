@@ -40,7 +40,8 @@ impl Distribution {
             Self::Truncated(mean, deviation, lower, upper) => (
                 vec![mean, deviation, lower, upper],
                 deviation > 0.0 && lower < upper && self.part() > 0.0,
-                "truncated = [mean, deviation, lower, upper], the deviation above 0 and the ends apart and not far from the mean",
+                "truncated = [mean, deviation, lower, upper], the deviation above 0 and the ends apart and not far \
+                from the mean",
             ),
             Self::Uniform(lower, upper) => (vec![lower, upper], lower < upper, "uniform = [lower, upper]"),
             Self::Triangular(lower, mode, upper) => (
@@ -119,8 +120,8 @@ fn below(x: f64) -> f64 {
     0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// The number of standard deviations below which this part of a normal distribution is: M. J. Wichura, Algorithm AS 241,
-/// Applied Statistics 37 (1988) 477.
+/// The number of standard deviations below which this part of a normal distribution is: M. J. Wichura, Algorithm AS
+/// 241, Applied Statistics 37 (1988) 477.
 fn normal(part: f64) -> f64 {
     const MIDDLE: [[f64; 8]; 2] = [
         [

@@ -165,8 +165,8 @@ fn toleranced(program: &Program, plan: &Plan<'_>, drawn: &Drawn, numbers: &[Colu
     numbers.iter().enumerate().filter_map(of).collect()
 }
 
-/// For each number its value with all parameters at their means, the parts of its deviation by each, and all of it; none
-/// where there are no derivatives.
+/// For each number its value with all parameters at their means, the parts of its deviation by each, and all of it;
+/// none where there are no derivatives.
 type FirstOrder = Vec<Option<(f64, Vec<f64>, f64)>>;
 
 fn first_order(program: &Program, plan: &Plan<'_>, drawn: &Drawn) -> Option<FirstOrder> {

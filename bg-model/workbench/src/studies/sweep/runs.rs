@@ -189,8 +189,8 @@ impl<'a> Job<'a> {
         many(&values).into_iter().map(|outcome| self.done(outcome, Vec::new())).collect()
     }
 
-    /// Makes the runs of these numbers by `one`, which is handed the values of all parameters in it and gives numbers of
-    /// it as well.
+    /// Makes the runs of these numbers by `one`, which is handed the values of all parameters in it and gives numbers
+    /// of it as well.
     pub fn looked_at(&self, runs: &[usize], one: impl Fn(&[f64]) -> (Result<Outcome, String>, Vec<f64>)) -> Vec<Done> {
         let of = |&run: &usize| {
             let (outcome, numbers) = one(&self.values(run));

@@ -1,6 +1,7 @@
 //! What the folder of a sweep has: how much of it is done, what failed and why; its tables as CSV.
 //!
-//! In: a folder. Out: lines for the terminal, the same as JSON, rows for programs that read no Parquet. One shard is in memory at a time.
+//! In: a folder. Out: lines for the terminal, the same as JSON, rows for programs that read no Parquet. One shard is in
+//! memory at a time.
 
 use std::fmt::{self, Display, Formatter};
 use std::io::{self, Write};
@@ -68,7 +69,10 @@ impl Progress {
     /// Never: a recipe is a table of TOML.
     #[must_use]
     pub fn json(&self) -> serde_json::Value {
-        let reason = |(reason, runs, first): &(String, usize, i64)| serde_json::json!({ "reason": reason, "runs": runs, "first": first });
+        let reason = |(reason, runs, first): &(String, usize, i64)| {
+            serde_json::json!({ "reason": reason, "runs": runs,
+            "first": first })
+        };
         serde_json::json!({
             "recipe": serde_json::to_value(&self.recipe).expect("TOML has text keys only"),
             "runs": self.runs, "failed": self.failed, "reasons": self.reasons.iter().map(reason).collect::<Vec<_>>(),

@@ -1,10 +1,10 @@
 //! What the runs of a sweep by tolerances say of a number: how it is spread, and which parameter spreads it.
 //!
-//! In: the values of a number in all runs, in the order of the runs. Out: mean, deviation, quantiles, each with what it may
-//! be off; Sobol indices. Methods: a quantile's interval is that of order statistics (H. A. David, H. N. Nagaraja, Order
-//! Statistics (2003), 7.1), by the normal approximation of the binomial distribution; first indices by A. Saltelli et al.,
-//! Comput. Phys. Commun. 181 (2010) 259, table 2 (b), total ones by M. J. W. Jansen, Comput. Phys. Commun. 117 (1999) 35;
-//! their intervals by drawing the samples anew (B. Efron, Ann. Statist. 7 (1979) 1).
+//! In: the values of a number in all runs, in the order of the runs. Out: mean, deviation, quantiles, each with what it
+//! may be off; Sobol indices. Methods: a quantile's interval is that of order statistics (H. A. David, H. N. Nagaraja,
+//! Order Statistics (2003), 7.1), by the normal approximation of the binomial distribution; first indices by A.
+//! Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, table 2 (b), total ones by M. J. W. Jansen, Comput. Phys.
+//! Commun. 117 (1999) 35; their intervals by drawing the samples anew (B. Efron, Ann. Statist. 7 (1979) 1).
 
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};

@@ -1,8 +1,8 @@
 //! What is kept of each run: numbers made of its outputs, times of its events, whole trajectories.
 //!
-//! In: a run. Out: a number for each column. Largest and least are those of the solution, whatever the samples. Means and
-//! integrals are those of straight lines between the samples (trapezoidal rule); where that is not exact enough, the model
-//! can observe an `integral(..)`, or samples can be finer.
+//! In: a run. Out: a number for each column. Largest and least are those of the solution, whatever the samples. Means
+//! and integrals are those of straight lines between the samples (trapezoidal rule); where that is not exact enough,
+//! the model can observe an `integral(..)`, or samples can be finer.
 
 use bg_analysis::criterion::Criterion;
 use bg_analysis::criterion::of_run::{Found, Look};

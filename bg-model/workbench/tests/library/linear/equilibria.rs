@@ -135,8 +135,8 @@ fn what_falls_or_is_driven_has_no_equilibrium() {
     let error = equilibrium(&falling, 0.0, &start(&falling)).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "there is no equilibrium near the start: `stone.linear.p_y` still changes by -1.9620e1 N where the search ended; \
-         hold it by a joint, a spring or an opposite force, or start from another pose"
+        "there is no equilibrium near the start: `stone.linear.p_y` still changes by -1.9620e1 N where the search \
+         ended; hold it by a joint, a spring or an opposite force, or start from another pose"
     );
     // What only a source changes, and nothing else feels, may go on; what others feel may not.
     let filled = model::<Filled>(&[], &[]);

@@ -92,7 +92,8 @@ bond_graph! {
             point end = [-0.3, 0, 0];
             start end at [0, 0, 0]; start turned rotation_z(angle);
         }
-        joint pin: revolute z (ground.pivot -> rod.end) { stiffness 1e6; damping 50; tilt stiffness 1e3; tilt damping 1; }
+        joint pin: revolute z (ground.pivot -> rod.end) { stiffness 1e6; damping 50; tilt stiffness 1e3;
+            tilt damping 1; }
         C twist(q) = 9 * q;
         pin.spin -> twist;
         observe { angle: rad = rod.angle; twist: rad = twist.q }

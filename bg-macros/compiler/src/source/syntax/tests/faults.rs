@@ -48,7 +48,8 @@ fn unknown_words_have_a_near_miss_or_a_list() {
         ),
         (
             "scene S { expect planr; }",
-            "2:18 BG0111 found `planr`, expected an expectation: `planar`, `states`, `independent`, `integral` | write `planar`",
+            "2:18 BG0111 found `planr`, expected an expectation: `planar`, `states`, `independent`, `integral` | write \
+            `planar`",
         ),
     ]);
 }
@@ -87,8 +88,8 @@ fn two_comparisons_are_one_of_the_least_or_the_largest() {
 
 #[test]
 fn the_displacement_of_a_junction_has_no_start() {
-    let fault = "BG0102 `slide.displacement` has no start: it counts from t = 0, where it is 0 | leave this out, and write \
-                 `slide.displacement + E` with the start E where you use it";
+    let fault = "BG0102 `slide.displacement` has no start: it counts from t = 0, where it is 0 | leave this out, and \
+                 write `slide.displacement + E` with the start E where you use it";
     for text in ["start slide.displacement = 0.1;", "start slide.displacement at 0.1;"] {
         assert_eq!(in_graph(text).trim_end(), format!("2:7 {fault}"), "{text}");
     }
@@ -119,7 +120,8 @@ fn unexpected_tokens_name_what_could_stand_there() {
         ("let a = 1.0.x;", "2:12 BG0102 found `.`, expected an operator | write an operator here"),
         (
             "R r = 2 strat 1;",
-            "2:9 BG0102 found `strat`, expected an operator, `in`, `at`, `start`, `energy`, `holds` or `;` | write `start`",
+            "2:9 BG0102 found `strat`, expected an operator, `in`, `at`, `start`, `energy`, `holds` or `;` | write \
+            `start`",
         ),
         (
             "drive m on pin torque = 1 { damping 1; }",
@@ -131,7 +133,8 @@ fn unexpected_tokens_name_what_could_stand_there() {
         ),
         (
             "contact c (a -> b) { }",
-            "2:18 BG0102 found the end of the parentheses, expected `along x` or a shape such as `circle 0.1` | write `along x` here",
+            "2:18 BG0102 found the end of the parentheses, expected `along x` or a shape such as `circle 0.1` | write \
+            `along x` here",
         ),
         ("body b { sphere; }", "2:16 BG0102 found `;`, expected `radius` | write `radius` here"),
         (
@@ -251,8 +254,8 @@ fn names_and_numbers_are_plain() {
 
 #[test]
 fn comments_and_attributes_stand_where_they_mean_something() {
-    let misplaced = "2:1 BG0120 only `graph`, `part`, `param`, `input` and `scene` have a documentation comment | write `//` \
-    instead of `///`";
+    let misplaced = "2:1 BG0120 only `graph`, `part`, `param`, `input` and `scene` have a documentation comment | \
+    write `//` instead of `///`";
     check(&[
         ("/// A coil.\nI L = coil;", misplaced),
         ("/// Nothing.", misplaced),

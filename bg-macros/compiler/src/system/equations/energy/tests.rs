@@ -46,7 +46,8 @@ fn branches_that_exclude_each_other_are_compared() {
     let narrow = |factor: &str| {
         format!(
             "let n: m = 1e-4; C c(q) = if q < s {{ 0 }} else if q < s + n {{ k * (q - s) }} else {{ k * n }}
-             energy if q < s {{ 0 }} else if q < s + n {{ {factor} * k * (q - s) * (q - s) }} else {{ k * n * (q - s) - k * n * n / 2 }};"
+             energy if q < s {{ 0 }} else if q < s + n {{ {factor} * k * (q - s) * (q - s) }} else {{ k * n * (q - s) \
+             - k * n * n / 2 }};"
         )
     };
     assert_eq!(codes(&narrow("0.5")), none);

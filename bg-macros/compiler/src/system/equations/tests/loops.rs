@@ -78,8 +78,10 @@ fn agrees(statements: &str, given: &[(&str, f64)], expected: &[(&str, f64)]) -> 
 
 #[test]
 fn two_inertias_on_one_shaft_are_one() {
-    let text = "1 shaft: rotation; I J = 2; I wheel = 3; Se torque = 10; R bearing = 4; torque -> shaft -> J; shaft -> wheel;
-        shaft -> bearing; observe { e: N*m = wheel.effort; f: rad/s = wheel.flow; p: kg*m^2/s = wheel.p; energy: J = wheel.energy;
+    let text = "1 shaft: rotation; I J = 2; I wheel = 3; Se torque = 10; R bearing = 4; torque -> shaft -> J; \
+        shaft -> wheel;
+        shaft -> bearing; observe { e: N*m = wheel.effort; f: rad/s = wheel.flow; p: kg*m^2/s = wheel.p; \
+        energy: J = wheel.energy;
         w: W = wheel.power; }";
     // f = 6 / 2 = 3; f' = (10 - 4 * 3) / 5 = -0.4.
     let expected =
@@ -111,7 +113,8 @@ fn a_rigid_gear_makes_one_inertia_of_two() {
     // f2 = n f1: (J1 + n^2 J2) f1' = T - n M.
     let (j1, j2, n): (f64, f64, f64) = (2.0, 3.0, 5.0);
     let first = (10.0 - n * 7.0) / (j1 + n * n * j2);
-    let gear = "param n: 1 = 5; 1 a: rotation; I J1 = 2; Se T = 10; 1 b: rotation; I J2 = 3; Se M = -7; T -> a -> J1; M -> b -> J2;
+    let gear = "param n: 1 = 5; 1 a: rotation; I J1 = 2; Se T = 10; 1 b: rotation; I J2 = 3; Se M = -7; T -> a -> J1; \
+        M -> b -> J2;
         observe { e: N*m = J2.effort; f: rad/s = b.flow; }";
     let expected = [("J1.p'", j1 * first), ("e", j2 * n * first), ("f", n * 4.0)];
     agrees(&format!("{gear} TF gear = n; a -> gear -> b;"), &[("J1.p", 8.0)], &expected);
@@ -133,8 +136,10 @@ fn a_rigid_gear_makes_one_inertia_of_two() {
 #[test]
 fn a_mass_on_a_lever_feels_the_change_of_its_ratio() {
     // The ratio is that of the angle: v = r cos(x) w, and m v' = m (r cos(x) w' - r sin(x) w^2).
-    let text = "param r: m = 0.5; 1 lever: rotation; I J = 2; C turn(q) = 0 * q energy 0; MTF arm = r * cos(turn.q) in_unit; 1 mass: translation;
-        I m = 3; Se T = 10; T -> lever -> J; lever -> turn; lever -> arm -> mass -> m; observe { e: N = m.effort; v: m/s = mass.flow; p: kg*m/s = m.p }";
+    let text = "param r: m = 0.5; 1 lever: rotation; I J = 2; C turn(q) = 0 * q energy 0; \
+        MTF arm = r * cos(turn.q) in_unit; 1 mass: translation;
+        I m = 3; Se T = 10; T -> lever -> J; lever -> turn; lever -> arm -> mass -> m; observe { e: N = m.effort; \
+        v: m/s = mass.flow; p: kg*m/s = m.p }";
     let text = text.replace(" in_unit", "").replace("C turn(q) = 0 * q energy 0", "param k: N*m/rad = 4; C turn = k");
     let (r, j, m, x, w): (f64, f64, f64, f64, f64) = (0.5, 2.0, 3.0, 0.7, 1.5);
     let ratio = r * x.cos();
@@ -148,7 +153,8 @@ fn a_mass_on_a_lever_feels_the_change_of_its_ratio() {
 fn a_capacitor_across_a_source_takes_the_current_of_the_change() {
     let circuit = |source: &str| {
         format!(
-            "param c: F = 2; param r: Ohm = 5; 0 node: electrical; C cap = c; R load = r; {source} s -> node -> cap; node -> load;
+            "param c: F = 2; param r: Ohm = 5; 0 node: electrical; C cap = c; R load = r; {source} s -> node -> cap; \
+            node -> load;
              observe {{ i: A = cap.flow; q: C = cap.q; w: J = cap.energy; supplied: A = s.flow; }}"
         )
     };
@@ -168,10 +174,12 @@ fn an_inertia_behind_a_source_of_flow_needs_the_force_of_its_change() {
 
 #[test]
 fn resistors_in_a_row_and_side_by_side_divide() {
-    let text = "param a: Ohm = 2; param b: Ohm = 3; Se u = 10; 1 ring: electrical; R ra = a; R rb = b; u -> ring -> ra; ring -> rb;
+    let text = "param a: Ohm = 2; param b: Ohm = 3; Se u = 10; 1 ring: electrical; R ra = a; R rb = b; \
+        u -> ring -> ra; ring -> rb;
         observe { i: A = ring.flow; ua: V = ra.effort; ub: V = rb.effort }";
     agrees(text, &[], &[("i", 2.0), ("ua", 4.0), ("ub", 6.0)]);
-    let text = "param a: Ohm = 2; param b: Ohm = 3; Sf i = 10; 0 node: electrical; R ra = a; R rb = b; i -> node -> ra; node -> rb;
+    let text = "param a: Ohm = 2; param b: Ohm = 3; Sf i = 10; 0 node: electrical; R ra = a; R rb = b; \
+        i -> node -> ra; node -> rb;
         observe { u: V = node.effort; ia: A = ra.flow }";
     agrees(text, &[], &[("u", 12.0), ("ia", 6.0)]);
 }
@@ -179,7 +187,8 @@ fn resistors_in_a_row_and_side_by_side_divide() {
 #[test]
 fn a_bridge_is_that_of_kirchhoff() {
     // Node b at the top, c and d at the sides, ground below.
-    let text = "param r1: Ohm = 1, above 0; param r2: Ohm = 2, above 0; param r3: Ohm = 3, above 0; param r4: Ohm = 4, above 0; param r5: Ohm = 5, above 0;
+    let text = "param r1: Ohm = 1, above 0; param r2: Ohm = 2, above 0; param r3: Ohm = 3, above 0; \
+        param r4: Ohm = 4, above 0; param r5: Ohm = 5, above 0;
         Se u = 10; 0 b: electrical; 0 c: electrical; 0 d: electrical; u -> b;
         1 b1: electrical; R R1 = r1; b -> b1 -> c; b1 -> R1; 1 b2: electrical; R R2 = r2; b -> b2 -> d; b2 -> R2;
         R R3 = r3; c -> R3; R R4 = r4; d -> R4; 1 b5: electrical; R R5 = r5; c -> b5 -> d; b5 -> R5;
@@ -197,7 +206,8 @@ fn a_bridge_is_that_of_kirchhoff() {
 fn resistors_make_a_loop_through_transformers_and_gyrators() {
     let text = |two_port: &str| {
         format!(
-            "Se u = 10; 1 a: translation; R ra = 2; 1 b: translation; R rb = 3; param n: 1 = 2; param g: N*s/m = 4; {two_port}
+            "Se u = 10; 1 a: translation; R ra = 2; 1 b: translation; R rb = 3; param n: 1 = 2; param g: N*s/m = 4; \
+            {two_port}
              u -> a -> ra; a -> x -> b -> rb; observe {{ fa: m/s = a.flow; fb: m/s = b.flow; }}"
         )
     };
@@ -232,7 +242,8 @@ fn multibonds_have_loops_and_dependent_tensors() {
         assert!((own[k] * turn[k] + effort - (1.0 + k as f64)).abs() < 1e-13);
     }
     assert!(found["balance"].abs() < 1e-12);
-    let text = "1 a[3]: translation; R r = [1, 2, 4]; R s = [[2, 0.5, 0], [0.5, 3, 0.25], [0, 0.25, 4]]; Se f = [1, 2, 3]; f -> a -> r; a -> s;
+    let text = "1 a[3]: translation; R r = [1, 2, 4]; R s = [[2, 0.5, 0], [0.5, 3, 0.25], [0, 0.25, 4]]; \
+        Se f = [1, 2, 3]; f -> a -> r; a -> s;
         observe { v: m/s = a.flow; e: N = s.effort }";
     let mut of = equations(text);
     let found = values(&mut of, &[]);
@@ -245,10 +256,13 @@ fn multibonds_have_loops_and_dependent_tensors() {
 #[test]
 fn a_body_s_tensor_turns_in_derivative_causality() {
     // Both tensors turn with the same orientation: together they are one body's.
-    let both = "1 a[3]: rotation; orientation R of a start rotation_x(0.3) * rotation_z(0.8); I J = [1, 2, 3] in R start [1, 2, 3];
+    let both = "1 a[3]: rotation; orientation R of a start rotation_x(0.3) * rotation_z(0.8); \
+        I J = [1, 2, 3] in R start [1, 2, 3];
         Se T = [1, 2, 3]; T -> a -> J; observe { w: rad/s = a.flow; energy: J = stored_energy; }";
-    let parts = "1 a[3]: rotation; orientation R of a start rotation_x(0.3) * rotation_z(0.8); I J = [0.25, 1.5, 1] in R;
-        I wheel = [0.75, 0.5, 2] in R; Se T = [1, 2, 3]; T -> a -> J; a -> wheel; observe { w: rad/s = a.flow; energy: J = stored_energy; }";
+    let parts = "1 a[3]: rotation; orientation R of a start rotation_x(0.3) * rotation_z(0.8); \
+        I J = [0.25, 1.5, 1] in R;
+        I wheel = [0.75, 0.5, 2] in R; Se T = [1, 2, 3]; T -> a -> J; a -> wheel; observe { w: rad/s = a.flow; \
+        energy: J = stored_energy; }";
     let (mut both, mut parts) = (equations(both), equations(parts));
     let orientation: Vec<(String, f64)> = {
         let starts: Vec<_> = both.states.iter().map(|state| state.start).collect();
@@ -275,9 +289,12 @@ fn a_body_s_tensor_turns_in_derivative_causality() {
 
 #[test]
 fn a_motor_with_a_rigid_gearbox_is_that_of_the_book() {
-    let text = "param R: Ohm = 2; param L: H = 0.5; param k: N*m/A = 0.1; param n: 1 = 0.25; param Jm: kg*m^2 = 1e-3; param Jl: kg*m^2 = 0.02; param b: N*m*s/rad = 0.05;
-        Se u = 12; 1 armature: electrical; I coil = L; R winding = R; GY motor = k; 1 shaft: rotation; I rotor = Jm; TF gear = n; 1 load: rotation;
-        I wheel = Jl; R bearing = b; u -> armature -> coil; armature -> winding; armature -> motor -> shaft -> rotor; shaft -> gear -> load -> wheel; load -> bearing;
+    let text = "param R: Ohm = 2; param L: H = 0.5; param k: N*m/A = 0.1; param n: 1 = 0.25; param Jm: kg*m^2 = 1e-3; \
+        param Jl: kg*m^2 = 0.02; param b: N*m*s/rad = 0.05;
+        Se u = 12; 1 armature: electrical; I coil = L; R winding = R; GY motor = k; 1 shaft: rotation; I rotor = Jm; \
+        TF gear = n; 1 load: rotation;
+        I wheel = Jl; R bearing = b; u -> armature -> coil; armature -> winding; armature -> motor -> shaft -> rotor; \
+        shaft -> gear -> load -> wheel; load -> bearing;
         observe { m: N*m = wheel.effort }";
     let (i, w) = (1.5, 30.0);
     let turn = (0.1 * i - 0.25 * 0.05 * 0.25 * w) / (1e-3 + 0.25 * 0.25 * 0.02);
@@ -288,7 +305,8 @@ fn a_motor_with_a_rigid_gearbox_is_that_of_the_book() {
 #[test]
 fn a_law_without_an_inverse_keeps_its_state_in_step() {
     // tanh has no inverse here: the momentum of `k` stays a state; both speeds are equal and stay so.
-    let text = "1 a: translation; I i = 2; param m: kg = 4; param n: kg = 1; param S: kg^2*m^2/s^2 = 5; param T: kg^2*m^2/s^2 = 1;
+    let text = "1 a: translation; I i = 2; param m: kg = 4; param n: kg = 1; param S: kg^2*m^2/s^2 = 5; \
+        param T: kg^2*m^2/s^2 = 1;
         I k(p) = p / m * (1 + p * p / S); I l(p) = p / n * (1 + p * p / T); Se s = 1; s -> a -> i; a -> k; a -> l;
         observe { e: N = k.effort; }";
     let mut of = equations(text);
@@ -306,14 +324,16 @@ fn a_law_without_an_inverse_keeps_its_state_in_step() {
 #[test]
 fn a_state_that_only_the_strokes_determine_stays() {
     // The R gives the flow, its effort is what is left of the source: p is a state all the same.
-    let text = "1 a: translation; I m = 2; R r(effort e) = e / 3; Se s = 10; s -> a -> m; a -> r; observe { v: m/s = a.flow; }";
+    let text = "1 a: translation; I m = 2; R r(effort e) = e / 3; Se s = 10; s -> a -> m; a -> r; \
+        observe { v: m/s = a.flow; }";
     agrees(text, &[("m.p", 4.0)], &[("v", 2.0), ("m.p'", 10.0 - 3.0 * 2.0)]);
     assert!(faults(&text.replace("e / 3", "e * e * e / 3"))[0].starts_with("BG0512"));
 }
 
 /// A mass on a straight rail with a resistor, which the transformer's effort leads to: v = r w with r = (2, 0, -1), and
 /// m |r|^2 w' = -w / g + F r. One component of the momentum is a state, the largest.
-const RAIL: &str = "1 a[3]: translation; I m = 3; Se push = [5, 7, 1]; TF rail(effort e) = dot([2, 0, -1], e); 0 b: translation; R r(effort e) = 4 * e;
+const RAIL: &str = "1 a[3]: translation; I m = 3; Se push = [5, 7, 1]; TF rail(effort e) = dot([2, 0, -1], e); \
+    0 b: translation; R r(effort e) = 4 * e;
     a -> m; push -> a; a -> rail -> b -> r;";
 
 #[test]
@@ -347,7 +367,8 @@ fn a_resistor_that_switches_in_a_loop_takes_the_branch_of_its_solution() {
     // Forward 1 Ohm, backward 99 Ohm, behind another one of 1 Ohm.
     let text = |source: f64| {
         format!(
-            "Se u = {source}; 1 a: electrical; param r: Ohm = 1; R series = r; R diode(i) = if i < 0 {{ 99 * i }} else {{ 1 * i }}; u -> a -> series; a -> diode;
+            "Se u = {source}; 1 a: electrical; param r: Ohm = 1; R series = r; \
+            R diode(i) = if i < 0 {{ 99 * i }} else {{ 1 * i }}; u -> a -> series; a -> diode;
              observe {{ i: A = a.flow }}"
         )
     };
@@ -406,9 +427,8 @@ fn what_cannot_be_solved_is_told() {
         format!("{nonlinear} 1 k: translation; I m = 2; Se push = 3; rSe hold = 0; push -> k -> m; k -> hold;");
     assert_eq!(
         faults(&nonlinear),
-        [
-            "BG0501 algebraic loop that is not linear and depends on the reaction of `hold`, which is not known before it: `s` -> `r`"
-        ]
+        ["BG0501 algebraic loop that is not linear and depends on the reaction of `hold`, which is not known before \
+            it: `s` -> `r`"]
     );
     // The capacitor's state is what the iteration finds.
     let dependent = "param c: F = 0.5; param g: Ohm/V^2 = 0.1; 1 a: electrical; I coil = 2; Se u = 3; u -> a -> coil;

@@ -11,7 +11,8 @@ fn geared(joint: &str) -> String {
              start turned rotation_z(0.7); }}
          joint pin: revolute z (ground.O -> bob.top) {{ {joint} }}
          TF gear = n; 1 motor: rotation; I wheel = rotor; pin.spin -> gear -> motor -> wheel;
-         observe {{ angle: rad = pin.direction; f: N = pin.force; tooth: N*m = wheel.effort; stored: J = stored_energy }}"
+         observe {{ angle: rad = pin.direction; f: N = pin.force; tooth: N*m = wheel.effort; \
+         stored: J = stored_energy }}"
     )
 }
 
@@ -47,8 +48,10 @@ fn reactions_are_those_with_the_rotor_counted_in() {
 
 #[test]
 fn a_loop_of_resistors_folds_with_its_parameters() {
-    let graph = "param a: Ohm = 2, above 0; param b: Ohm = 3, above 0; param c: Ohm = 4, above 0; Se u = 10; 1 line: electrical; R ra = a;
-        0 tap: electrical; R rb = b; 1 coil: electrical; R rc = c; I l = 0.5; u -> line -> ra; line -> tap -> rb; tap -> coil -> l; coil -> rc;
+    let graph = "param a: Ohm = 2, above 0; param b: Ohm = 3, above 0; param c: Ohm = 4, above 0; Se u = 10; \
+        1 line: electrical; R ra = a;
+        0 tap: electrical; R rb = b; 1 coil: electrical; R rc = c; I l = 0.5; u -> line -> ra; line -> tap -> rb; \
+        tap -> coil -> l; coil -> rc;
         observe { i: A = coil.flow; v: V = tap.effort; lost: J = integral(dissipated_power) }";
     for tuned in ["tune {}", "tune { b }", ""] {
         scene(graph, tuned).agrees();

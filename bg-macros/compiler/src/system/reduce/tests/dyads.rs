@@ -3,8 +3,10 @@
 use super::{Scene, outputs, scene};
 
 /// A slider-crank whose slide is above the crank's pin.
-const SLIDER_CRANK: &str = "param rod: m = 0.5, above 0; gravity [0, -9.81, 0]; ground { point O = [0, 0, 0]; point Q = [0, 0.1, 0]; }
-    body crank { mass 1; inertia [0.02, 0.02, 0.02]; point O = [-0.1, 0, 0]; point A = [0.1, 0, 0]; start O at [0, 0, 0]; }
+const SLIDER_CRANK: &str = "param rod: m = 0.5, above 0; gravity [0, -9.81, 0]; ground { point O = [0, 0, 0]; \
+    point Q = [0, 0.1, 0]; }
+    body crank { mass 1; inertia [0.02, 0.02, 0.02]; point O = [-0.1, 0, 0]; point A = [0.1, 0, 0]; \
+    start O at [0, 0, 0]; }
     body link { mass 2; inertia [0.1, 0.1, 0.1]; point A = [-rod / 2, 0, 0]; point B = [rod / 2, 0, 0];
         start A at [0.2, 0, 0]; start turned rotation_z(TURN); }
     body block { mass 0.5; inertia [0.01, 0.01, 0.01]; start at [0.2 + rod * cos(TURN), 0.1, 0]; }
@@ -33,7 +35,8 @@ fn four_bar(crank: f64, is_above: bool, tilt: f64) -> String {
     let [a, b] = [crank * x, crank * y];
     format!(
         "param torque: N*m = 3; gravity [0, -9.81, 0]; ground {{ point O = [0, 0, 0]; point Q = [{x:?}, {y:?}, 0]; }}
-        body crank {{ mass 1; inertia [0.02, 0.02, 0.02]; point O = [-0.1, 0, 0]; point A = [{crank} - 0.1, 0, 0]; start O at [0, 0, 0];
+        body crank {{ mass 1; inertia [0.02, 0.02, 0.02]; point O = [-0.1, 0, 0]; point A = [{crank} - 0.1, 0, 0]; \
+        start O at [0, 0, 0];
             start turned rotation_z({tilt:?}); }}
         body link {{ mass 2; inertia [0.1, 0.1, 0.1]; point A = [-0.5, 0.1, 0]; point B = [0.5, 0.1, 0];
             start A at [{a:?}, {b:?}, 0]; start turned rotation_z(GUESS({link:?})); }}
@@ -44,7 +47,8 @@ fn four_bar(crank: f64, is_above: bool, tilt: f64) -> String {
         joint q: revolute z (ground.Q -> rocker.Q) {{ rigid; }}
         joint b: revolute z (link.B -> rocker.B) {{ rigid; }}
         drive motor on o torque = torque - 0.5 * o.speed;
-        observe {{ link: rad = link.direction; rocker: rad = rocker.direction; x: m = link.position; e: J = stored_energy; }}"
+        observe {{ link: rad = link.direction; rocker: rad = rocker.direction; x: m = link.position; \
+        e: J = stored_energy; }}"
     )
 }
 

@@ -24,9 +24,11 @@ fn chain(rods: usize, first: &str) -> String {
 }
 
 /// A crank that moves a slotted arm: a block on the crank's end slides along the arm.
-const SHAPER: &str = "param torque: N*m = 2; gravity [0, -9.81, 0]; ground { point O = [0, 0, 0]; point Q = [0, -1, 0]; }
+const SHAPER: &str = "param torque: N*m = 2; gravity [0, -9.81, 0]; ground { point O = [0, 0, 0]; \
+    point Q = [0, -1, 0]; }
     body crank { mass 1; inertia [0.02, 0.02, 0.02]; point O = [0, 0, 0]; point A = [0.3, 0, 0]; start O at [0, 0, 0]; }
-    body arm { mass 2; inertia [0.3, 0.3, 0.3]; point Q = [-0.5, 0, 0]; start Q at [0, -1, 0]; start turned rotation_z(guess(1.3)); }
+    body arm { mass 2; inertia [0.3, 0.3, 0.3]; point Q = [-0.5, 0, 0]; start Q at [0, -1, 0]; \
+    start turned rotation_z(guess(1.3)); }
     body block { mass 0.5; inertia [0.01, 0.01, 0.01]; start at [0.3, 0, 0]; start turned rotation_z(guess(1.3)); }
     joint o: revolute z (ground.O -> crank.O) { rigid; }
     joint q: revolute z (ground.Q -> arm.Q) { rigid; }

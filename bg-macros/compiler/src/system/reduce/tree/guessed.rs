@@ -1,9 +1,9 @@
 //! Start velocities that are guessed.
 //!
 //! In: equations whose bodies keep their states. Out: what of each body's velocity the start looks for, and whether the
-//! joints determine all of it. Where they do, the speeds of joints can be looked for in its place, with the same result.
-//! Method: the rank of the flows by the unknowns at the first guesses. It is at most the one elsewhere, so that a rank
-//! which is full there is full but for places of measure zero.
+//! joints determine all of it. Where they do, the speeds of joints can be looked for in its place, with the same
+//! result. Method: the rank of the flows by the unknowns at the first guesses. It is at most the one elsewhere, so that
+//! a rank which is full there is full but for places of measure zero.
 
 use std::collections::BTreeSet;
 
@@ -79,7 +79,8 @@ pub(super) fn sought(equations: &mut StateEquations, speed: Id) -> Id {
     pool.symbol(Symbol::numbered(Symbol::Unknown, guesses.len() - 1))
 }
 
-/// The values of the states at the start, with these of the parameters and the first guesses, `more` one with 1 more of it.
+/// The values of the states at the start, with these of the parameters and the first guesses, `more` one with 1 more of
+/// it.
 fn starts(equations: &StateEquations, parameters: &[f64], more: Option<usize>) -> Vec<f64> {
     let given = Environment { parameters, ..Environment::default() };
     let mut unknowns = evaluate(&equations.pool, &equations.assembly.guesses, &given);

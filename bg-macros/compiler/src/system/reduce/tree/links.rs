@@ -1,11 +1,11 @@
 //! The tree of links: where each step of a joint is and what the inertia is that it moves, in axes in which its own
 //! freedom is about or along the third.
 //!
-//! In: bodies, joints. Out: [`Link`]s, parents first, and the [`Seat`] of each body on one. All of this is constant. The
-//! origin of a link that turns is on its hinge, where the offset from the parent has a component less. What turns about
-//! a hinge as it does about any line through it, mass as it is along the hinge, is counted to the
-//! parent: nothing changes by it, and the recursion has zeros there (Khalil and Dombre, Modeling, Identification and
-//! Control of Robots, 2002, section 9.4).
+//! In: bodies, joints. Out: [`Link`]s, parents first, and the [`Seat`] of each body on one. All of this is constant.
+//! The origin of a link that turns is on its hinge, where the offset from the parent has a component less. What turns
+//! about a hinge as it does about any line through it, mass as it is along the hinge, is counted to the parent: nothing
+//! changes by it, and the recursion has zeros there (Khalil and Dombre, Modeling, Identification and Control of Robots,
+//! 2002, section 9.4).
 
 use std::collections::BTreeMap;
 

@@ -2,8 +2,8 @@
 //!
 //! In: the rates of the bodies' momenta without reactions. Out: for each link the torque about its hinge or the force
 //! along its slide, moment and force of everything else in its axes, and an acceleration of the ground in place of
-//! weights. Method: a torque is what the moments of both bodies have opposite to each other along the axis, a force what
-//! their forces have so.
+//! weights. Method: a torque is what the moments of both bodies have opposite to each other along the axis, a force
+//! what their forces have so.
 
 use super::bodies::{self, Body};
 use super::joints::{Joint, Kind};
@@ -124,8 +124,8 @@ fn constant_part(pool: &mut Pool, of: Id) -> Id {
     pool.linear(constant, &parts)
 }
 
-/// The torque about a hinge, or the force along a slide: what the moments, or the forces, of both bodies have opposite to
-/// each other along its axis. It is taken out of these, with the moments of such a force.
+/// The torque about a hinge, or the force along a slide: what the moments, or the forces, of both bodies have opposite
+/// to each other along its axis. It is taken out of these, with the moments of such a force.
 fn effort(pool: &mut Pool, tree: &Tree<'_>, forces: &mut [[Value; 2]], of: &Link) -> Id {
     let joint = &tree.joints[of.step.0];
     // The axis is written by the axes of either end; of two that cross each is on its own.

@@ -69,8 +69,8 @@ fn with(pool: &mut Pool, id: Id, of: Symbol, by: Id) -> Id {
     substitute(pool, &[id], &|symbol| (symbol == of).then_some(by))[0]
 }
 
-/// The effort of each, by its multiplier: that of its law, or where it holds its joint what the link's effort has to be,
-/// `needed`, less what else it is, unless a stop before it holds the joint.
+/// The effort of each, by its multiplier: that of its law, or where it holds its joint what the link's effort has to
+/// be, `needed`, less what else it is, unless a stop before it holds the joint.
 pub(super) fn images(pool: &mut Pool, all: &[Hold], moved: &[Moved], needed: &[Option<Id>]) -> BTreeMap<Symbol, Id> {
     let mut images = BTreeMap::new();
     for (place, hold) in all.iter().enumerate() {
@@ -127,8 +127,8 @@ fn are_apart(all: &[Hold]) -> bool {
     frictions.iter().collect::<BTreeSet<_>>().len() == frictions.len()
 }
 
-/// Whether each of these rows moves a joint alone that nothing can hold, so that their matrix is regular whichever joints
-/// are held.
+/// Whether each of these rows moves a joint alone that nothing can hold, so that their matrix is regular whichever
+/// joints are held.
 fn are_regular(
     pool: &mut Pool,
     rows: &[Reaction],

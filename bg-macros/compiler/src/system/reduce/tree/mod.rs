@@ -2,10 +2,10 @@
 //!
 //! In: equations with bodies of eighteen states each and rigid joints, among them such as form trees on the ground
 //! (`joints` has their kinds). Out: the same with an angle or a travel and its speed for each freedom of these; poses
-//! and momenta of bodies are expressions of these. Method: with the motion of a joint in place of that of a body its gaps
-//! and flows are zero identically (`recognition`), so no motion is lost; its reactions work on none of these motions, so
-//! they occur in none of the rates. These are found from tip to ground and back (`recursion`). What else is held, by
-//! joints that close loops, stops and dry friction, keeps its reactions, which are loads to the tree.
+//! and momenta of bodies are expressions of these. Method: with the motion of a joint in place of that of a body its
+//! gaps and flows are zero identically (`recognition`), so no motion is lost; its reactions work on none of these
+//! motions, so they occur in none of the rates. These are found from tip to ground and back (`recursion`). What else is
+//! held, by joints that close loops, stops and dry friction, keeps its reactions, which are loads to the tree.
 
 mod bodies;
 mod guessed;
@@ -188,8 +188,8 @@ struct Released {
     momenta: Vec<(usize, Id)>,
 }
 
-/// The rates with no joint locked, as impacts find it, with the reactions that hold joints as symbols; none where no stop
-/// does.
+/// The rates with no joint locked, as impacts find it, with the reactions that hold joints as symbols; none where no
+/// stop does.
 fn released(
     equations: &mut StateEquations,
     tree: &Tree<'_>,
@@ -319,8 +319,8 @@ fn become_states(
     Some(places)
 }
 
-/// The accelerations, and what holds locked links, as sums over the reactions that are left, so that the matrix of these
-/// has parts of the rates; those of links with a coordinate, whose accelerations nothing reads, as they are.
+/// The accelerations, and what holds locked links, as sums over the reactions that are left, so that the matrix of
+/// these has parts of the rates; those of links with a coordinate, whose accelerations nothing reads, as they are.
 fn linear(pool: &mut Pool, links: &[Link], of: Accelerations, multipliers: &[Symbol]) -> Accelerations {
     let zero = pool.zero();
     let mut written = |ids: &[Id]| -> Vec<Id> {
@@ -380,8 +380,9 @@ fn joints(
     (which == Which::All || !is_flat(&equations.pool, bodies, &joints)).then_some(joints)
 }
 
-/// Takes the reactions of joints out of the equations; they do not work on the motions of these bodies. Gives those that
-/// outputs read. None where something else beside momenta reads one, or an output reads one of a loop that joints share.
+/// Takes the reactions of joints out of the equations; they do not work on the motions of these bodies. Gives those
+/// that outputs read. None where something else beside momenta reads one, or an output reads one of a loop that joints
+/// share.
 fn release(
     equations: &mut StateEquations,
     (of_tree, joints): (&[Body], &[Joint]),
@@ -416,8 +417,8 @@ fn release(
     Some(wanted)
 }
 
-/// Whether all rows of rigid joints are independent at the start, so that each reaction is one number there and, but for places
-/// of measure zero, anywhere.
+/// Whether all rows of rigid joints are independent at the start, so that each reaction is one number there and, but
+/// for places of measure zero, anywhere.
 fn are_independent(equations: &mut StateEquations, bodies: &[Body], start: &Environment<'_>) -> bool {
     let StateEquations { pool, reactions, .. } = equations;
     let flows: Vec<Id> = reactions[..friction::rigid(reactions)].iter().map(|reaction| reaction.slip.flow).collect();
@@ -486,8 +487,8 @@ fn places_of_spins(pool: &mut Pool, bodies: &[Body]) -> BTreeMap<Id, Id> {
     places
 }
 
-/// Whether all joints move in the x-y plane, with their points at the height of the bodies' centres and these bodies' third
-/// axes principal ones.
+/// Whether all joints move in the x-y plane, with their points at the height of the bodies' centres and these bodies'
+/// third axes principal ones.
 fn is_flat(pool: &Pool, bodies: &[Body], joints: &[Joint]) -> bool {
     let zero = |id: Id| pool.as_number(id) == Some(0.0);
     joints.iter().all(|joint| {

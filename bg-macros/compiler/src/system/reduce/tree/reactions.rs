@@ -1,10 +1,10 @@
 //! The reactions of joints whose bodies are in joint coordinates.
 //!
 //! In: a tree with its accelerations, the rows of its joints that something reads. Out: each of their reactions by
-//! coordinates. Method: what a joint hands to the bodies that it carries is what accelerates these less what acts on them
-//! beside it, summed from tip to ground (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 5.3). Where the
-//! directions that it holds are proved to be perpendicular to each other and of length 1, a reaction is the component of
-//! that along its own.
+//! coordinates. Method: what a joint hands to the bodies that it carries is what accelerates these less what acts on
+//! them beside it, summed from tip to ground (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 5.3). Where
+//! the directions that it holds are proved to be perpendicular to each other and of length 1, a reaction is the
+//! component of that along its own.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -125,8 +125,8 @@ fn wrenches(
     wrenches
 }
 
-/// Force and moment about the joint's place on one end that it hands to its child, in the parent's axes, then in inertial
-/// axes; none where both are on one link.
+/// Force and moment about the joint's place on one end that it hands to its child, in the parent's axes, then in
+/// inertial axes; none where both are on one link.
 fn handed(
     pool: &mut Pool,
     tree: &Tree<'_>,
@@ -169,8 +169,8 @@ struct Held {
     is_inertial: bool,
 }
 
-/// The directions of a joint's reactions; none where they are not those of a joint that holds forces at its place on this
-/// end and moments, each direction once.
+/// The directions of a joint's reactions; none where they are not those of a joint that holds forces at its place on
+/// this end and moments, each direction once.
 fn held(
     pool: &mut Pool,
     tree: &Tree<'_>,

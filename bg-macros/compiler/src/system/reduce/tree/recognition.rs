@@ -292,9 +292,9 @@ fn crossing(pool: &mut Pool, ends: Ends<'_>, gap: Id, Given { starts, .. }: &Giv
     Some([on_parent, on_child].map(|axis| numbers::upright(&axis)))
 }
 
-/// Where the joint is on both ends, by the gaps e . (x_b + R_b s_b - x_a - R_a s_a) of its translations, in directions e
-/// that are constant or in the axes of one end; none where that changes. Where a direction is not held the place on the
-/// end that has the directions is taken as zero in it.
+/// Where the joint is on both ends, by the gaps e . (x_b + R_b s_b - x_a - R_a s_a) of its translations, in directions
+/// e that are constant or in the axes of one end; none where that changes. Where a direction is not held the place on
+/// the end that has the directions is taken as zero in it.
 fn points(pool: &mut Pool, [parent, child]: Ends<'_>, (gaps, along): (&[Id], &[Vec<Id>])) -> Option<[Value; 2]> {
     let child = child?;
     let reads = pool.symbols(&along.concat());

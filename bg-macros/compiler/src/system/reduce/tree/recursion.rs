@@ -4,8 +4,8 @@
 //! (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 7), in the axes of each link. Accelerations are those
 //! of the links' origins, so that no velocity of a point is needed; what turning does is linear in the six products of
 //! an angular velocity's components. Gravity is an acceleration of the ground. What links do while all speeds stay as
-//! they are is found first, from ground to tip; the wrenches that this takes are all that velocities do, so that the way
-//! from tip to ground and back is one of links at rest. Which of the two ways has gravity is chosen by operations.
+//! they are is found first, from ground to tip; the wrenches that this takes are all that velocities do, so that the
+//! way from tip to ground and back is one of links at rest. Which of the two ways has gravity is chosen by operations.
 
 use crate::expr::{Id, Pool};
 use crate::system::Value;

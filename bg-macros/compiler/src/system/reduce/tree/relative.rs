@@ -1,10 +1,10 @@
 //! What depends on the relative motion of neighbours alone, by the joints between them.
 //!
-//! In: equations over poses and velocities of bodies, joints with their coordinates. Out: the same with sums that read a
-//! body and some that it carries, by their relative motion alone, written by the coordinates of the joints between them.
-//! Method: such a sum is the same whatever the pose and the motion of the body that carries the others are; it is proved
-//! for a rotation of four symbols, by values at places drawn at random, where it is no analytic function by the polynomial
-//! identity. Terms that have no body in common are looked at apart.
+//! In: equations over poses and velocities of bodies, joints with their coordinates. Out: the same with sums that read
+//! a body and some that it carries, by their relative motion alone, written by the coordinates of the joints between
+//! them. Method: such a sum is the same whatever the pose and the motion of the body that carries the others are; it is
+//! proved for a rotation of four symbols, by values at places drawn at random, where it is no analytic function by the
+//! polynomial identity. Terms that have no body in common are looked at apart.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -155,8 +155,10 @@ fn hinges_one_after_the_other_move_as_their_bodies_do() {
 
 /// Links of a plane that lie beside each other, whose joints hold them against moments across it.
 const BESIDE: &str = "gravity [0, -9.81, 0]; ground { point O = [0, 0, 0]; point C = [0.4, 0, 0]; }
-    body b0 { mass 1; inertia [1e-3, 1e-3, 2e-3]; point foot = [0, -0.05, 0]; point head = [0, 0.05, 0.02]; start foot at [0, 0, 0]; }
-    body b1 { mass 2; inertia [1e-3, 2e-2, 2e-2]; point left = [-0.2, 0, 0]; point right = [0.2, 0, 0.01]; start left at [0, 0.1, 0.02]; }
+    body b0 { mass 1; inertia [1e-3, 1e-3, 2e-3]; point foot = [0, -0.05, 0]; point head = [0, 0.05, 0.02]; \
+    start foot at [0, 0, 0]; }
+    body b1 { mass 2; inertia [1e-3, 2e-2, 2e-2]; point left = [-0.2, 0, 0]; point right = [0.2, 0, 0.01]; \
+    start left at [0, 0.1, 0.02]; }
     joint o: revolute z (ground.O -> b0.foot) { rigid; } joint a: revolute z (b0.head -> b1.left) { rigid; }";
 
 #[test]
@@ -193,7 +195,8 @@ fn a_loop_of_links_beside_each_other_is_one_of_the_plane() {
 }
 
 /// Two bodies on one, one of them on a hinge whose axis is along no coordinate axis.
-const BRANCHES: &str = "body b2 { mass 3; inertia [0.1, 0.2, 0.3]; point top = [0, 0.1, 0.2] turned rotation_x(0.4); start top at [0.3, -0.3, -0.6];
+const BRANCHES: &str = "body b2 { mass 3; inertia [0.1, 0.2, 0.3]; point top = [0, 0.1, 0.2] turned rotation_x(0.4); \
+    start top at [0.3, -0.3, -0.6];
         start turned rotation_y(0.3); }
     joint j2: revolute y (b0.side -> b2.top) { rigid; }";
 
@@ -241,11 +244,18 @@ fn joints_of_all_kinds_move_as_their_bodies_do() {
 #[test]
 fn a_floating_base_moves_as_its_bodies_do() {
     let kinds = ["revolute y", "<universal x y", "prismatic z"].map(str::to_owned);
-    let text = joined(&kinds, "").replace("ground { point O = [0, 0, 0.3]; }", "ground { point O = [0, 0, 0.3]; }
-        body base { mass 4; inertia [0.4, 0.5, 0.6]; point hip = [0.1, 0, -0.3]; point side = [-0.2, 0.3, 0.1]; start hip at [0, 0, 0.3]; }
+    let text = joined(&kinds, "")
+        .replace(
+            "ground { point O = [0, 0, 0.3]; }",
+            "ground { point O = [0, 0, 0.3]; }
+        body base { mass 4; inertia [0.4, 0.5, 0.6]; point hip = [0.1, 0, -0.3]; point side = [-0.2, 0.3, 0.1]; \
+        start hip at [0, 0, 0.3]; }
         body b3 { mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.5, 0]; start top at [-0.3, 0.3, 0.7]; }
         joint hang: spherical (base.side -> b3.top) { rigid; }
-        spring s (ground.O -> b3) { stiffness 20; length 0.1; damping 0.4; }").replace("ground.O -> b0", "base.hip -> b0");
+        spring s (ground.O -> b3) { stiffness 20; length 0.1; damping 0.4; \
+        }",
+        )
+        .replace("ground.O -> b0", "base.hip -> b0");
     let scene = put(&format!("{text} {}", observed(4, "")));
     assert_eq!(scene.reduced.states.len(), 18 + 12 + 2 + 4 + 2, "{:?}", scene.left());
     agrees(&scene);
@@ -254,8 +264,8 @@ fn a_floating_base_moves_as_its_bodies_do() {
     assert_eq!(put(&text).reduced.states.len(), 18 + 4);
 }
 
-/// The angles that laws read are the coordinates, from either end and with points turned by quarters; a state that counts
-/// turns is none of its own. Beside the literal graph in a run.
+/// The angles that laws read are the coordinates, from either end and with points turned by quarters; a state that
+/// counts turns is none of its own. Beside the literal graph in a run.
 #[test]
 fn angles_that_are_read_are_the_coordinates() {
     let quarter = std::f64::consts::FRAC_PI_2;
@@ -263,11 +273,13 @@ fn angles_that_are_read_are_the_coordinates() {
         for second in ["a.low -> b.top", "b.top -> a.low"] {
             let text = format!(
                 "gravity [0, 0, -9.81]; ground {{ point O = [0, 0, 0.3]; }}
-                 body a {{ mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.1, 0.2] turned rotation_x({quarter}); start turned rotation_x(-{quarter});
+                 body a {{ mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.1, 0.2] turned rotation_x({quarter}); \
+                 start turned rotation_x(-{quarter});
                      point low = [0.1, 0, -0.4] turned rotation_z({quarter}); start top at [0, 0, 0.3]; }}
                  joint i: revolute x ({ends}) {{ rigid; }}
                  body b {{ mass 1; inertia [0.2, 0.1, 0.15]; point top = [0.1, 0, 0.3] turned rotation_y(-{quarter});
-                     start turned rotation_x(-{quarter}) * rotation_z({quarter}) * rotation_y({quarter}); start top at [0.1, -0.6, 0.4]; }}
+                     start turned rotation_x(-{quarter}) * rotation_z({quarter}) * rotation_y({quarter}); \
+                     start top at [0.1, -0.6, 0.4]; }}
                  joint j: revolute y ({second}) {{ rigid; }}
                  drive turn on i torque = -3 * i.angle; drive back on j torque = 0.5 - 2 * j.angle - 0.1 * j.speed;
                  observe {{ a.position; b.position; p: rad = i.angle; q: rad = j.angle; w: rad/s = j.speed; }}"
@@ -284,16 +296,19 @@ fn angles_that_are_read_are_the_coordinates() {
     }
 }
 
-/// Points by sums of decimals meet but for rounding, 8.7e-19 m here: the numbers are those of a published double pendulum.
+/// Points by sums of decimals meet but for rounding, 8.7e-19 m here: the numbers are those of a published double
+/// pendulum.
 #[test]
 fn rounding_of_places_tears_no_joint() {
     let text = "gravity [0, 0, -9.81]; ground { point O = [0.0060872, 0, 0.035]; }
         body b0 { mass 0.26703; center [0.0086107, 2.1727e-6, 0.036012];
-            inertia [[4.0827e-4, 1.2675e-9, 1.8738e-5], [1.2675e-9, 3.8791e-4, 3.5443e-8], [1.8738e-5, 3.5443e-8, 3.6421e-5]];
+            inertia [[4.0827e-4, 1.2675e-9, 1.8738e-5], [1.2675e-9, 3.8791e-4, 3.5443e-8], [1.8738e-5, 3.5443e-8, \
+            3.6421e-5]];
             point low = [0.023, 0, 0.1]; start at [0.0060872, 0, 0.035]; }
         joint i: revolute x (ground.O -> b0) { rigid; }
         body b1 { mass 0.33238; center [-0.0050107, 1.9371e-10, 0.10088];
-            inertia [[0.0011753, -3.854e-13, -2.9304e-8], [-3.854e-13, 0.0011666, -5.2365e-12], [-2.9304e-8, -5.2365e-12, 1.4553e-5]];
+            inertia [[0.0011753, -3.854e-13, -2.9304e-8], [-3.854e-13, 0.0011666, -5.2365e-12], [-2.9304e-8, \
+            -5.2365e-12, 1.4553e-5]];
             start at [0.0060872, 0, 0.035] + [0.023, 0, 0.1]; }
         joint j: revolute x (b0.low -> b1) { rigid; }
         drive m on i torque = 0.1;";
@@ -307,7 +322,8 @@ fn rounding_of_places_tears_no_joint() {
 #[test]
 fn forces_along_slides_are_those_of_the_bodies() {
     let kinds = ["prismatic z", "revolute y", "<cylindrical x"].map(str::to_owned);
-    let loads = "drive push on j0 force = 3 - 20 * j0.travel; friction rub on j2 { coulomb 2; viscous 0.3; } drive turn on j2 torque = 0.2;";
+    let loads = "drive push on j0 force = 3 - 20 * j0.travel; friction rub on j2 { coulomb 2; viscous 0.3; \
+        } drive turn on j2 torque = 0.2;";
     let scene = put(&format!("{} {loads} {}", joined(&kinds, ""), observed(3, "d: m = j2.travel;")));
     assert_eq!(scene.reduced.states.len(), 8, "{:?}", scene.left());
     agrees(&scene);
@@ -322,11 +338,14 @@ fn forces_along_slides_are_those_of_the_bodies() {
 fn coordinates_start_where_the_bodies_do() {
     let text = "gravity [0, 0, -9.81]; ground { point O = [0, 0, 0.3]; }
         body a { mass 2; inertia [0.1, 0.2, 0.3]; point top = [0, 0.1, 0.2]; start turned rotation_z(0.4);
-            start top at [0, 0, 0.5]; start velocity [0, 0, 0.3] + cross([0, 0, 0.7], [sin(0.4) * 0.1, -cos(0.4) * 0.1, 0]); start spin [0, 0, 0.7]; }
+            start top at [0, 0, 0.5]; start velocity [0, 0, 0.3] + cross([0, 0, 0.7], [sin(0.4) * 0.1, -cos(0.4) * \
+            0.1, 0]); start spin [0, 0, 0.7]; }
         joint guide: cylindrical z (ground.O -> a.top) { rigid; }
-        body b { mass 1; inertia [0.2, 0.1, 0.15]; point top = [0.1, 0, 0.3]; start turned rotation_z(0.4) * rotation_x(0.5) * rotation_y(-0.8);
+        body b { mass 1; inertia [0.2, 0.1, 0.15]; point top = [0.1, 0, 0.3]; \
+        start turned rotation_z(0.4) * rotation_x(0.5) * rotation_y(-0.8);
             start top at [0, 0, 0.5]; start spin [0, 0, 0.7];
-            start velocity [0, 0, 0.3] - cross([0, 0, 0.7], rotation_z(0.4) * rotation_x(0.5) * rotation_y(-0.8) * [0.1, 0, 0.3]); }
+            start velocity [0, 0, 0.3] - cross([0, 0, 0.7], rotation_z(0.4) * rotation_x(0.5) * rotation_y(-0.8) * \
+            [0.1, 0, 0.3]); }
         joint cross: universal x y (a.top -> b.top) { rigid; }
         observe { a.position; b.position; a.orientation; b.orientation; d: m = guide.travel; w: rad/s = guide.speed; }";
     let scene = scene(text, "tune {}");
@@ -438,8 +457,8 @@ fn what_else_is_held_has_the_rates_of_the_bodies() {
     }
 }
 
-/// Of the stops of equations the effort or the gap of each guard, how flows and their rates are, and how impulses of these
-/// stops change the flows of all, while rigid joints hold.
+/// Of the stops of equations the effort or the gap of each guard, how flows and their rates are, and how impulses of
+/// these stops change the flows of all, while rigid joints hold.
 fn of_stops(equations: &StateEquations, environment: &Environment<'_>) -> Vec<f64> {
     let impacts = &equations.impacts;
     let rigid = impacts.rigid.len();
@@ -461,8 +480,9 @@ fn of_stops(equations: &StateEquations, environment: &Environment<'_>) -> Vec<f6
     all
 }
 
-/// Joints that rest on stops, or stick, have known accelerations: what guards tell, how flows change and what impacts are
-/// calculated from is what it is in the literal graph, also beside rows that joints share, and takes few operations.
+/// Joints that rest on stops, or stick, have known accelerations: what guards tell, how flows change and what impacts
+/// are calculated from is what it is in the literal graph, also beside rows that joints share, and takes few
+/// operations.
 #[test]
 fn joints_that_rest_on_stops_are_locked() {
     const BOTH: &str = "stop a on j0 { at least -0.3; at most 0.2; restitution 0.5; }
@@ -471,7 +491,8 @@ fn joints_that_rest_on_stops_are_locked() {
         friction d on j2 { coulomb 2; }";
     const TIED: &str = "stop a on j0 { at most 0.2; restitution 0.5; } stop b on j1 { at least -0.2; restitution 0; }
         TF ratio = 0.5; 0 tie: translation; rSe follows = 0; j1.slide -> ratio -> tie -> j2.slide; follows -> tie;";
-    // With switches that are not all positive: two holds on one joint are nothing that the literal graph can be compared in.
+    // With switches that are not all positive: two holds on one joint are nothing that the literal graph can be
+    // compared in.
     let cases: [(&[&str], &str, &[usize]); 3] = [
         (&["revolute y", "revolute z", "revolute x"], BOTH, &[0, 1]),
         (&["revolute y", "revolute z", "revolute x"], ROUGH, &[0, 1, 2]),
@@ -535,8 +556,8 @@ fn reactions_are_those_of_the_bodies() {
     }
 }
 
-/// Where a joint closes a loop and all that joints hold is independent, reactions are one number each: those of the loop's
-/// joint and of the tree's.
+/// Where a joint closes a loop and all that joints hold is independent, reactions are one number each: those of the
+/// loop's joint and of the tree's.
 #[test]
 fn reactions_of_loops_are_those_of_the_bodies() {
     let grounded = chain(&["y", "z", "x", "y"], "").replacen("point O", "point P = [1.1, 0.2, -2.5]; point O", 1);
@@ -631,8 +652,8 @@ fn matrix(jacobian: &Jacobian, environment: &Environment<'_>, n: usize) -> Vec<V
     rows
 }
 
-/// Panics unless the derivatives with accelerations as unknowns are those entry by entry, in states at random; gives the
-/// unknowns and the operations of both with df/dt.
+/// Panics unless the derivatives with accelerations as unknowns are those entry by entry, in states at random; gives
+/// the unknowns and the operations of both with df/dt.
 fn same_derivatives(statements: &str) -> (usize, [usize; 2]) {
     let equations = arranged(statements);
     let n = equations.states.len();
@@ -666,7 +687,8 @@ fn same_derivatives(statements: &str) -> (usize, [usize; 2]) {
 /// unknowns as freedoms.
 #[test]
 fn derivatives_by_accelerations_are_those_entry_by_entry() {
-    let loads = "input push: N*m; drive m on j1 torque = 3 - 2 * j1.angle - 0.3 * j1.speed + push; drive n on j0 torque = 1.5 * j1.speed;
+    let loads = "input push: N*m; drive m on j1 torque = 3 - 2 * j1.angle - 0.3 * j1.speed + push; \
+        drive n on j0 torque = 1.5 * j1.speed;
         drive f on b1.low force = [1, 2, 3]; drive twist on b1 torque = [0.3, 0, 0.1];
         spring s (ground.O -> b1.low) { stiffness 20; length 0.1; damping 0.4; }";
     for (text, freedoms) in [
@@ -688,9 +710,9 @@ fn derivatives_by_accelerations_are_those_entry_by_entry() {
     }
 }
 
-/// Of a body on no joint, and of one on a ball at the ground, motion and accelerations are unknowns; a joint that sticks has
-/// a known acceleration, and so has one that rests on a stop; with a ball farther out, and with stops and dry friction, derivatives
-/// are those of the rates.
+/// Of a body on no joint, and of one on a ball at the ground, motion and accelerations are unknowns; a joint that
+/// sticks has a known acceleration, and so has one that rests on a stop; with a ball farther out, and with stops and
+/// dry friction, derivatives are those of the rates.
 #[test]
 fn derivatives_of_bodies_that_keep_their_orientation() {
     let floating = joined(&["revolute y", "<universal x y", "prismatic z"].map(str::to_owned), "")
@@ -714,12 +736,20 @@ fn derivatives_of_bodies_that_keep_their_orientation() {
         (
             of(
                 &["revolute y", "<revolute x", "prismatic z"],
-                "stop one on j1 { at least -0.3; at most 0.2; restitution 0; } stop two on j2 { at most 0.1; restitution 0.5; }
+                "stop one on j1 { at least -0.3; at most 0.2; restitution 0; } stop two on j2 { at most 0.1; \
+                restitution 0.5; }
                  drive m on j1 torque = 3 - 2 * j1.angle - 0.3 * j1.speed;",
             ),
             3,
         ),
-        (of(&["revolute y", "revolute x"], "stop s on j1 { at most 0.2; restitution 0; } friction b on j1 { coulomb 5; }"), 2),
+        (
+            of(
+                &["revolute y", "revolute x"],
+                "stop s on j1 { at most 0.2; restitution 0; } friction b on j1 { coulomb 5; \
+            }",
+            ),
+            2,
+        ),
     ] {
         assert_eq!(same_derivatives(&text).0, unknowns, "{text}");
     }
