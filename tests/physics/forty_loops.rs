@@ -6,8 +6,8 @@
 use bg_compiler::expr::{Environment, Id, evaluate};
 use bg_compiler::pipeline::{self, Arranged};
 use bg_compiler::source::{part, scene, syntax};
+use bg_compiler::system::equations::stage::Closed;
 use bg_compiler::system::equations::{Kind, StateEquations};
-use bg_compiler::system::stage::Closed;
 use bg_model::capability::Joints;
 use bg_model::holding::{Held, Slip};
 use bg_model::integrator::{Dop853, Tolerances};

@@ -14,13 +14,13 @@ use crate::source::ast::{Graph, Item, Name, Scene, Source};
 use crate::source::part::{self, Flattened};
 use crate::source::scene::{self, Variant};
 use crate::source::{mechanism, names};
+use crate::system::equations::stage::{Closed, Ordered, Solved};
 use crate::system::equations::{self, StateEquations};
 use crate::system::jacobian::{self, Jacobian};
 use crate::system::projection;
 use crate::system::reduce::{self, Report, expectation};
 use crate::system::second_order::{self, SecondOrder};
 use crate::system::sizes::{self, Sizes};
-use crate::system::stage::{Closed, Ordered, Solved};
 
 /// A graph's results as far as its state equations.
 #[derive(Debug)]
@@ -261,7 +261,7 @@ pub fn compile(variant: &Variant) -> Staged<Compiled> {
     let (source, is_scene, scenes) = (variant.graph.clone(), variant.scene.is_some(), variant.scenes.clone());
     let Arranged { derived, reduction, equations } = arrange(variant)?;
     let jacobian = jacobian::differentiate(&equations);
-    let mut equations = equations.close();
+    let mut equations = Ordered::close(equations);
     let second_order = second_order::differentiate(&equations);
     let elimination = {
         let (states, unknowns, late) = (equations.states.len(), jacobian.unknowns.len(), jacobian.late);

@@ -12,7 +12,7 @@ use super::tape::{Tape, tape};
 use super::{Counts, Deferred, Program, Request, Routine, deferred, schedule};
 use crate::expr::{Id, Pool};
 use crate::system::equations::Iteration;
-use crate::system::stage::Closed;
+use crate::system::equations::stage::Closed;
 use crate::system::{Jacobian, SecondOrder, Sizes, StateEquations};
 
 /// Longer rates are not inlined where they are compiled for the machine's vectors: they would only fill the cache.

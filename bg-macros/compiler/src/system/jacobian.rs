@@ -18,7 +18,7 @@ use super::accelerated;
 use crate::expr::{Id, Pool, Symbol, derivative};
 use crate::system::equations::StateEquations;
 use crate::system::equations::solution::Solution;
-use crate::system::stage::Ordered;
+use crate::system::equations::stage::Ordered;
 
 /// df/dx and df/dt as expressions.
 #[derive(Clone, Debug)]
@@ -158,8 +158,8 @@ mod tests {
     use crate::expr::{Environment, evaluate, partial, substitute};
     use crate::pipeline;
     use crate::source::syntax;
+    use crate::system::equations::stage::Solved;
     use crate::system::reduce;
-    use crate::system::stage::Solved;
 
     /// The literal equations with their reactions as symbols, and the derivatives.
     fn differentiated(statements: &str) -> (StateEquations, Jacobian) {

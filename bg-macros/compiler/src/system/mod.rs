@@ -13,12 +13,11 @@ pub mod requirements;
 pub mod rigid;
 pub mod second_order;
 pub mod sizes;
-pub mod stage;
 mod value;
 
 pub use equations::StateEquations;
+pub use equations::stage::{Closed, Ordered, Projected, Solved};
 pub use jacobian::Jacobian;
 pub use second_order::SecondOrder;
 pub use sizes::Sizes;
-pub use stage::{Closed, Ordered, Projected, Solved};
 pub use value::Value;

@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 
 use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::equations::definite::Factors;
+use crate::system::equations::stage::{Projected, Solved};
 use crate::system::equations::{Holding, Kind, StateEquations};
-use crate::system::stage::{Projected, Solved};
 
 /// D over the mobility, the squared sine of the angle between a row and those before it, at which the projection is
 /// damped by half.

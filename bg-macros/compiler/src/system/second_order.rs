@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::expr::{Id, Node, Pool, Symbol, derivative};
+use crate::system::equations::stage::{Closed, Ordered, Projected};
 use crate::system::equations::{Kind, State, StateEquations};
-use crate::system::stage::{Closed, Ordered, Projected};
 
 /// Second derivatives as expressions.
 #[derive(Clone, Debug)]

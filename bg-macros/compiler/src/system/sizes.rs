@@ -6,7 +6,7 @@
 
 use crate::expr::{Id, Pool, Symbol, partial};
 use crate::system::equations::Kind;
-use crate::system::stage::Closed;
+use crate::system::equations::stage::Closed;
 
 /// The energy and its second derivatives.
 #[derive(Clone, Debug)]

@@ -28,6 +28,7 @@ mod shown;
 mod signals;
 pub mod solution;
 mod solving;
+pub mod stage;
 pub mod stop;
 mod storage;
 mod tables;

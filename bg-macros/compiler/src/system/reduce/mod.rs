@@ -25,7 +25,7 @@ mod zero;
 
 use crate::expr::{Branch, Id, Node, Pool, Symbol};
 use crate::system::equations::StateEquations;
-use crate::system::stage::Solved;
+use crate::system::equations::stage::Solved;
 
 pub use report::{Count, Fate, Kept, Report};
 

@@ -10,8 +10,8 @@ use crate::random::Random;
 use crate::source::scene::{Variant, variants};
 use crate::source::syntax;
 use crate::system::equations::StateEquations;
+use crate::system::equations::stage::Solved;
 use crate::system::reduce::expectation::wanted;
-use crate::system::stage::Solved;
 use crate::{pipeline, program};
 
 mod dependent;

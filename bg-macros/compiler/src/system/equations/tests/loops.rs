@@ -7,8 +7,8 @@ use crate::fault::Fault;
 use crate::pipeline;
 use crate::source::syntax;
 use crate::system::equations::StateEquations;
+use crate::system::equations::stage::Solved;
 use crate::system::reduce;
-use crate::system::stage::Solved;
 
 fn derived(statements: &str) -> Result<StateEquations, Vec<Fault>> {
     let text = format!("graph G {{\n{statements}\n}}");

@@ -6,11 +6,11 @@ use std::fmt::Write;
 use crate::expr::{Environment, Id, Symbol, derivative, evaluate, substitute};
 use crate::program::{Request, schedule};
 use crate::random::Random;
+use crate::system::equations::stage::Ordered;
 use crate::system::equations::{Origin, State, StateEquations};
 use crate::system::jacobian::{self, Jacobian};
 use crate::system::reduce::reaction;
 use crate::system::reduce::tests::{Draw, Scene, scene};
-use crate::system::stage::Ordered;
 
 /// A state with all outputs of `bodies` bodies and `others`.
 fn observed(bodies: usize, others: &str) -> String {

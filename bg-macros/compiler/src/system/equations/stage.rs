@@ -5,20 +5,20 @@
 
 use std::ops::{Deref, DerefMut};
 
-use super::equations::StateEquations;
+use super::StateEquations;
 use crate::fault::Staged;
 
 /// Equations whose reactions are solved for. They are symbols, each with its value.
 #[derive(Clone, Debug)]
-pub struct Solved(pub(in crate::system) StateEquations);
+pub struct Solved(pub(crate) StateEquations);
 
 /// The same, with what brings a state back onto what rigid joints hold.
 #[derive(Clone, Debug)]
-pub struct Projected(pub(in crate::system) StateEquations);
+pub struct Projected(pub(crate) StateEquations);
 
 /// The same, states of one kind side by side: the equations that a model integrates.
 #[derive(Clone, Debug)]
-pub struct Ordered(pub(in crate::system) StateEquations);
+pub struct Ordered(pub(crate) StateEquations);
 
 /// The same, with the values of the reactions in the places of their symbols, as programs evaluate them.
 #[derive(Clone, Debug)]
