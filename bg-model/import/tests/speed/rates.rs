@@ -1,6 +1,12 @@
 //! Times rates and Jacobians of imported robots, these with and without unknowns beside the states: the least of 40
 //! rounds over 256 states.
 
+mod chain16;
+mod chain2;
+mod chain32;
+mod chain4;
+mod chain64;
+mod chain8;
 mod panda;
 mod solo12;
 mod ur5;
@@ -63,4 +69,10 @@ fn main() {
     time::<ur5::Ur5>("ur5");
     time::<panda::Panda>("panda");
     time::<solo12::Solo>("solo12");
+    time::<chain2::Chain2>("chain2");
+    time::<chain4::Chain4>("chain4");
+    time::<chain8::Chain8>("chain8");
+    time::<chain16::Chain16>("chain16");
+    time::<chain32::Chain32>("chain32");
+    time::<chain64::Chain64>("chain64");
 }
