@@ -228,7 +228,7 @@ pub enum BadInput {
     /// The integrator needs the Taylor series of the system.
     #[error(
         "the integrator {method} needs the system's Taylor series, which there is not where an input changes with \
-         time, nor of a system written by hand without one; choose another integrator"
+         time, nor of a hand-written system without one; choose another integrator"
     )]
     NoSeries {
         /// The integrator's name.

@@ -66,9 +66,9 @@ impl Asked {
         Ok(Request { interrupt: self.interrupt.clone(), ..self.integration.request(t0, None)? })
     }
 
-    /// What is asked of a run from the start whose derivatives are wanted.
-    fn followed(&self) -> Result<Request, RequestError> {
-        Ok(Request { progress: self.progress.clone(), ..self.request(0.0)? })
+    /// A run that is all there is to do: it tells how far it is.
+    fn alone(&self, request: Request) -> Request {
+        Request { progress: self.progress.clone(), ..request }
     }
 
     /// What is asked of a run whose end, at `t` (s), is all that counts.
@@ -154,9 +154,7 @@ pub fn linearize(program: &Program, asked: &Asked, at: Option<f64>) -> Result<St
     let Given { scene, chosen, .. } = given(program, asked)?;
     check_time("at", at).map_err(refused)?;
     let machine = program.models.made(scene, &chosen.values, &chosen.inputs).map_err(refused)?;
-    let to =
-        |t: f64| -> Result<Request, RequestError> { Ok(Request { progress: asked.progress.clone(), ..asked.to(t)? }) };
-    let (space, _) = linearised(&*machine, at, &to).map_err(refused)?;
+    let (space, _) = linearised(&*machine, at, &|t| Ok(asked.alone(asked.to(t)?))).map_err(refused)?;
     Ok(space)
 }
 
@@ -171,7 +169,7 @@ pub fn sensitivity(
     by: &[String],
     of: &[String],
 ) -> Result<(Ran, Vec<Course>), Refused> {
-    let request = asked.followed().map_err(refused)?;
+    let request = asked.alone(asked.request(0.0).map_err(refused)?);
     let Given { scene, chosen, inputs } = given(program, asked)?;
     let (run, courses) = derivatives(program, scene, &chosen, request, [by, of]).map_err(Refused)?;
     Ok((Ran { run, failure: None, inputs }, courses))
@@ -203,7 +201,7 @@ pub struct Gradient {
 /// # Errors
 /// It cannot be made, or has no derivatives.
 pub fn gradient(program: &Program, asked: &Asked, of: &Number, by: &[String]) -> Result<Gradient, Refused> {
-    let request = asked.followed().map_err(refused)?;
+    let request = asked.alone(asked.request(0.0).map_err(refused)?);
     let Given { scene, chosen, .. } = given(program, asked)?;
     let (output, _) = only(scene, &of.output).map_err(refused)?;
     check_time("at", of.at).map_err(refused)?;

@@ -12,9 +12,9 @@ use crate::program::Routine;
 
 /// The attribute of functions that are inlined where they are called, in release builds.
 #[derive(Clone, Copy)]
-pub(super) struct Inlined;
+pub(super) struct InlinedAlways;
 
-impl ToTokens for Inlined {
+impl ToTokens for InlinedAlways {
     fn to_tokens(&self, tokens: &mut TokenStream) {
         tokens.extend(quote!(#[cfg_attr(not(debug_assertions), inline(always))]));
     }
@@ -34,7 +34,7 @@ impl Emission<'_> {
             .map(|paired| self.inlined_rate("paired_rate", self.with_pairs(&running.rate, Some(paired), "constant")));
         let pose = self.projection(&running.project, &tables.projected);
         let momenta = self.projection(&running.settle, &tables.settled);
-        let (inline, runs_in_lanes) = (Inlined, self.runs_in_lanes());
+        let (inline, runs_in_lanes) = (InlinedAlways, self.runs_in_lanes());
         quote! {
             impl<S: Scalar> ::bg_model::capability::Inlined<S, #n, #g> for Model<S> {
                 const IS_SHORT: bool = #is_short;
@@ -54,7 +54,7 @@ impl Emission<'_> {
     fn inlined_rate(&self, name: &str, (body, rates): (TokenStream, Vec<TokenStream>)) -> TokenStream {
         let Shape { n, g, .. } = &self.shape;
         let rates = &rates[..self.model.equations.states.len()];
-        let (inline, name) = (Inlined, format_ident!("{name}"));
+        let (inline, name) = (InlinedAlways, format_ident!("{name}"));
         quote! {
             #inline
             fn #name(&self, t: S, x: &SVector<S, #n>, negative: &[S::Switch; #g], dx: &mut SVector<S, #n>) {
@@ -65,8 +65,8 @@ impl Emission<'_> {
     }
 
     /// The attribute of rates, and of forces, that are inlined where they are compiled for the machine's vectors.
-    pub(super) fn inline(&self) -> Option<Inlined> {
-        self.model.programs.running.is_inlined().then_some(Inlined)
+    pub(super) fn inline(&self) -> Option<InlinedAlways> {
+        self.model.programs.running.is_inlined().then_some(InlinedAlways)
     }
 
     /// Gives the states of `moved` what the routine makes of them.

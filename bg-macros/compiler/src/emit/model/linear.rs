@@ -9,7 +9,7 @@ use super::super::elimination;
 use super::super::items::identifier;
 use super::super::routine::parsed;
 use super::capabilities::accessor;
-use super::inlined::Inlined;
+use super::inlined::InlinedAlways;
 use super::{Emission, Shape};
 use crate::tables::{self, Tables};
 
@@ -112,7 +112,7 @@ impl Emission<'_> {
         let called = quote!(#[inline(never)]);
         let functions = if elimination::is_unrolled(plan) {
             let unrolled = [elimination::factorisation(plan), elimination::substitution(plan, states)];
-            let unrolled = functions(names, Inlined.to_token_stream(), unrolled);
+            let unrolled = functions(names, InlinedAlways.to_token_stream(), unrolled);
             let compact = functions(["eliminate_compactly", "substitute_compactly"], called, tables);
             quote!(#unrolled #compact)
         } else {

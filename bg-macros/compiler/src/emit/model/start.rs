@@ -7,7 +7,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::super::items::identifier;
-use super::inlined::Inlined;
+use super::inlined::InlinedAlways;
 use super::required::requirement;
 use super::tabled::{Asked, HOLDING};
 use super::{Emission, Shape, shared};
@@ -141,7 +141,7 @@ impl Emission<'_> {
                 fn hold(#arguments) { #written }
             }
         } else {
-            let inline = Inlined;
+            let inline = InlinedAlways;
             quote! {
                 #[inline(never)]
                 fn hold(#arguments) {

@@ -9,7 +9,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::super::routine::parsed_each;
-use super::inlined::Inlined;
+use super::inlined::InlinedAlways;
 use super::{Emission, Shape, names};
 use crate::expr::Symbol;
 use crate::program::batches::{Batches, Read, batches};
@@ -104,7 +104,7 @@ impl Emission<'_> {
     /// nothing of it is compiled for numbers that are interpreted.
     pub(super) fn straight(&self) -> Option<TokenStream> {
         let Shape { n, g, .. } = &self.shape;
-        let inline = Inlined;
+        let inline = InlinedAlways;
         let functions = self.asked().into_iter().filter(|asked| asked.is_tabled() && !asked.is_table_alone());
         let functions: TokenStream = functions
             .map(|asked| {

@@ -12,7 +12,7 @@ use super::dyad::{Root, Turned};
 use super::report::Fate;
 use super::speeds::of_kind;
 use super::zero::{ROUNDING, value, vanishes};
-use super::{angle, friction};
+use super::{angle, friction, reaction};
 use crate::expr::{Circles, Id, Pool, Symbol, derivative, partial, same_polynomial, substitute};
 use crate::system::equations::{Balance, Kind, Origin, StateEquations};
 
@@ -278,7 +278,7 @@ pub(super) struct Row {
 /// The state in which an expression that is linear in it, with this slope, is zero.
 fn solved(pool: &mut Pool, of: Id, state: usize, slope: Id) -> Id {
     let zero = pool.zero();
-    let rest = substitute(pool, &[of], &|symbol| (symbol == Symbol::state(state)).then_some(zero))[0];
+    let rest = reaction::with(pool, of, Symbol::state(state), zero);
     let rest = pool.neg(rest);
     pool.div(rest, slope)
 }

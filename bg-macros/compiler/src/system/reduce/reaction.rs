@@ -85,9 +85,9 @@ fn right(pool: &mut Pool, multipliers: &[Symbol], residuals: &[Id]) -> Vec<Id> {
     constants.into_iter().map(|constant| pool.neg(constant)).collect()
 }
 
-/// What a reaction applies where its multiplier has this value.
-fn with(pool: &mut Pool, effort: Id, multiplier: Symbol, value: Id) -> Id {
-    substitute(pool, &[effort], &|symbol| (symbol == multiplier).then_some(value))[0]
+/// An expression with this value in the place of a symbol, as what a reaction applies where its multiplier has that.
+pub(super) fn with(pool: &mut Pool, id: Id, of: Symbol, value: Id) -> Id {
+    substitute(pool, &[id], &|symbol| (symbol == of).then_some(value))[0]
 }
 
 /// 1 / D of a row.

@@ -13,7 +13,7 @@ use crate::expr::{Id, Node, Pool, Symbol, partial, substitute};
 use crate::system::equations::{Reaction, StateEquations, Switched};
 use crate::system::link::{Locked, Moved};
 use crate::system::reduce::friction;
-use crate::system::reduce::reaction::decay;
+use crate::system::reduce::reaction::{decay, with};
 
 /// A friction or a stop on a link's own freedom.
 pub(super) struct Hold {
@@ -62,11 +62,6 @@ pub(super) fn lock(equations: &mut StateEquations, moved: &mut [Moved], images: 
     }
     reactions.truncate(friction::rigid(reactions));
     all
-}
-
-/// An expression with this in the place of a symbol.
-fn with(pool: &mut Pool, id: Id, of: Symbol, by: Id) -> Id {
-    substitute(pool, &[id], &|symbol| (symbol == of).then_some(by))[0]
 }
 
 /// The effort of each, by its multiplier: that of its law, or where it holds its joint what the link's effort has to

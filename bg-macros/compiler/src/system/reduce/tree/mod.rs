@@ -197,8 +197,7 @@ fn released(
     (ground, when): (&Value, Ground),
     holds: &[Hold],
 ) -> Option<Released> {
-    let stops = holds.iter().filter(|hold| hold.reaction.rebound.is_some()).map(|hold| &hold.reaction);
-    let multipliers = multipliers(equations.reactions.iter().chain(stops));
+    let multipliers = multipliers(equations.reactions.iter().chain(stops(holds)));
     if multipliers.len() == equations.reactions.len() {
         return None;
     }
@@ -219,8 +218,7 @@ impl Released {
         holds: &[Hold],
     ) -> Unlocked {
         let StateEquations { pool, states, .. } = equations;
-        let stops: Vec<Reaction> =
-            holds.iter().map(|hold| &hold.reaction).filter(|reaction| reaction.rebound.is_some()).cloned().collect();
+        let stops: Vec<Reaction> = stops(holds).cloned().collect();
         let read: BTreeSet<Symbol> = multipliers(&stops).into_iter().collect();
         let rates = states.iter().map(|state| state.rate).enumerate();
         let mut rates: BTreeMap<usize, Id> = rates.filter(|&(_, rate)| has_any(pool, &[rate], &read)).collect();
@@ -234,6 +232,11 @@ impl Released {
         }
         Unlocked { stops, rates: rates.into_iter().collect() }
     }
+}
+
+/// The stops among what holds joints.
+fn stops(holds: &[Hold]) -> impl Iterator<Item = &Reaction> {
+    holds.iter().map(|hold| &hold.reaction).filter(|reaction| reaction.rebound.is_some())
 }
 
 /// The symbols of these reactions.
