@@ -73,10 +73,10 @@ pub(crate) fn input(name: &str, value: &Bound<'_, PyAny>, raised: &Raised) -> Py
 /// The times and the values of a table: of a tuple of both, or of rows.
 fn columns(value: &Bound<'_, PyAny>) -> PyResult<(Vec<f64>, Vec<f64>)> {
     if value.is_instance_of::<PyTuple>() {
-        if let Ok((times, values)) = value.extract::<(Vec<f64>, Vec<f64>)>() {
-            if times.len() == values.len() {
-                return Ok((times, values));
-            }
+        if let Ok((times, values)) = value.extract::<(Vec<f64>, Vec<f64>)>()
+            && times.len() == values.len()
+        {
+            return Ok((times, values));
         }
         return Err(PyValueError::new_err("no pair of columns"));
     }
