@@ -8,31 +8,28 @@
 //! Numbers of states are slices in here: what calculates is compiled once, for all models and methods, in the machine's
 //! vectors.
 
-use alloc::vec::Vec;
-
 use pulp::NullaryFnOnce;
 
 use super::PointRef;
-use super::side_by_side::{OfEach, for_each, put, some};
+use super::side_by_side::{OfEach, Padded, SIDE_BY_SIDE, for_each, put, some};
 use crate::model::scalar::machine::Arch;
 
 /// The coefficients that follow from the states and rates at both ends.
 pub(super) const FROM_ENDS: usize = 3;
 
+/// A coefficient of each state.
+pub(super) type Coefficient = Padded<f64, SIDE_BY_SIDE>;
+
 /// The polynomials of all states, with `C` coefficients each.
 #[derive(Clone, Debug)]
 pub(super) struct Polynomial<const C: usize> {
-    coefficients: [Vec<f64>; C],
+    coefficients: [Coefficient; C],
 }
 
 impl<const C: usize> Polynomial<C> {
-    pub fn new() -> Self {
-        Self { coefficients: [const { Vec::new() }; C] }
-    }
-
-    /// Makes room for so many states.
-    pub fn fit(&mut self, states: usize) {
-        self.coefficients.iter_mut().for_each(|coefficient| coefficient.resize(states, 0.0));
+    /// Of so many states.
+    pub fn new(states: usize) -> Self {
+        Self { coefficients: core::array::from_fn(|_| Padded::new(states, 0.0)) }
     }
 
     /// Sets the coefficients that follow from the ends of the step, and those after them to what `write` writes: it
@@ -42,7 +39,7 @@ impl<const C: usize> Polynomial<C> {
         start: PointRef<'_>,
         h: f64,
         end: PointRef<'_>,
-        write: impl Fn(usize, &[Vec<f64>; FROM_ENDS], &mut [f64]),
+        write: impl Fn(usize, &[Coefficient; FROM_ENDS], &mut Coefficient),
     ) {
         let (ends, behind) = self.coefficients.split_first_chunk_mut().expect("coefficients of the ends");
         let [chord, at_start, at_end] = &mut *ends;
@@ -92,6 +89,8 @@ impl NullaryFnOnce for Polynomials<'_> {
 }
 
 impl OfEach for Polynomials<'_> {
+    const CAN_REPEAT: bool = true;
+
     #[inline(always)]
     fn of<const W: usize>(&mut self, first: usize) {
         let Self { coefficients, start, theta, x } = self;

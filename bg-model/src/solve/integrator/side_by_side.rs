@@ -31,6 +31,14 @@ impl<S: Copy, const W: usize> Padded<S, W> {
         some(&self.numbers, first)
     }
 
+    /// The numbers with the room behind them, of `N` that have the same room: slices of one length, so that one look
+    /// at where a group is serves for all of them.
+    #[inline(always)]
+    pub fn with_room<const N: usize>(all: [&mut Self; N]) -> [&mut [S]; N] {
+        let length = all.iter().map(|numbers| numbers.numbers.len()).min().unwrap_or(0);
+        all.map(|numbers| &mut numbers.numbers[..length])
+    }
+
     /// Writes the group that begins at a state, and what lies behind the last state with it.
     #[inline(always)]
     pub fn set_group(&mut self, first: usize, group: [S; W]) {
@@ -84,7 +92,6 @@ impl<S: Copy, const W: usize, const R: usize> Stack<S, W, R> {
     }
 
     /// The same, to be changed.
-    #[cfg(feature = "std")]
     #[inline(always)]
     pub fn groups_mut(&mut self) -> &mut [(usize, [[S; W]; R])] {
         &mut self.groups
@@ -108,17 +115,23 @@ impl<S: Copy, const W: usize, const R: usize> Stack<S, W, R> {
 
 /// A calculation for each state.
 pub(crate) trait OfEach {
+    /// Whether it gives the same where it is done of a state twice, as it does where it reads nothing that it writes.
+    const CAN_REPEAT: bool;
+
     /// Calculates it of `W` states from `first` on.
     fn of<const W: usize>(&mut self, first: usize);
 }
 
 /// Calculates it of so many states.
 #[inline(always)]
-pub(crate) fn for_each(states: usize, calculation: &mut impl OfEach) {
+pub(crate) fn for_each<C: OfEach>(states: usize, calculation: &mut C) {
     let mut first = 0;
     while first + SIDE_BY_SIDE <= states {
         calculation.of::<SIDE_BY_SIDE>(first);
         first += SIDE_BY_SIDE;
+    }
+    if C::CAN_REPEAT && first > 0 && first < states {
+        return calculation.of::<SIDE_BY_SIDE>(states - SIDE_BY_SIDE);
     }
     while first < states {
         calculation.of::<1>(first);
@@ -134,6 +147,40 @@ pub(crate) fn some<S: Copy, const W: usize>(of: &[S], first: usize) -> [S; W] {
 
 /// Writes numbers from `first` on.
 #[inline(always)]
-pub(super) fn put<S: Copy, const W: usize>(to: &mut [S], first: usize, numbers: [S; W]) {
+pub(crate) fn put<S: Copy, const W: usize>(to: &mut [S], first: usize, numbers: [S; W]) {
     *to[first..].first_chunk_mut().expect("there is a number for each state") = numbers;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Doubles numbers, and counts how often it does of each.
+    struct Doubled<'a> {
+        of: &'a [f64],
+        to: Vec<f64>,
+        times: Vec<u32>,
+    }
+
+    impl OfEach for Doubled<'_> {
+        const CAN_REPEAT: bool = true;
+
+        fn of<const W: usize>(&mut self, first: usize) {
+            put(&mut self.to, first, some::<_, W>(self.of, first).map(|number| 2.0 * number));
+            self.times[first..first + W].iter_mut().for_each(|times| *times += 1);
+        }
+    }
+
+    #[test]
+    fn each_state_is_calculated_whatever_their_number() {
+        for states in 0..40 {
+            let of: Vec<f64> = (0..states).map(|state| state as f64).collect();
+            let mut doubled = Doubled { of: &of, to: vec![-1.0; states], times: vec![0; states] };
+            for_each(states, &mut doubled);
+            assert!(doubled.to.iter().zip(&of).all(|(to, of)| *to == 2.0 * of), "{states} states: {:?}", doubled.to);
+            // Beyond whole groups one more group, not one state after the other.
+            let most = if states > SIDE_BY_SIDE && !states.is_multiple_of(SIDE_BY_SIDE) { 2 } else { 1 };
+            assert_eq!(doubled.times.iter().max().copied().unwrap_or(1), most, "{states} states");
+        }
+    }
 }

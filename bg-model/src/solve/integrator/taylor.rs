@@ -131,6 +131,8 @@ struct Sums<'a> {
 }
 
 impl OfEach for Sums<'_> {
+    const CAN_REPEAT: bool = true;
+
     #[inline(always)]
     fn of<const W: usize>(&mut self, first: usize) {
         let n = self.change.len();

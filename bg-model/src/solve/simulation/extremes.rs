@@ -142,6 +142,8 @@ struct Taking<'a> {
 }
 
 impl OfEach for Taking<'_> {
+    const CAN_REPEAT: bool = true;
+
     #[inline(always)]
     fn of<const W: usize>(&mut self, first: usize) {
         let values: [f64; W] = some(self.values, first);
@@ -189,6 +191,8 @@ struct Marking<'a> {
 }
 
 impl OfEach for Marking<'_> {
+    const CAN_REPEAT: bool = true;
+
     #[inline(always)]
     fn of<const W: usize>(&mut self, first: usize) {
         let Ends { before, from, to, ratio } = self.ends;

@@ -166,6 +166,8 @@ struct Residuals<'a, const S: usize, const P: usize> {
 }
 
 impl<const S: usize, const P: usize> OfEach for Residuals<'_, S, P> {
+    const CAN_REPEAT: bool = true;
+
     #[inline(always)]
     fn of<const W: usize>(&mut self, first: usize) {
         let Self { tableau, h, .. } = self;
@@ -205,6 +207,8 @@ struct Corrections<'a, const S: usize, const P: usize> {
 }
 
 impl<const S: usize, const P: usize> OfEach for Corrections<'_, S, P> {
+    const CAN_REPEAT: bool = false;
+
     #[inline(always)]
     fn of<const W: usize>(&mut self, first: usize) {
         let Self { tableau, scale, .. } = self;

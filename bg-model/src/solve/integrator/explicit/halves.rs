@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 use super::stages::Stages;
 use super::{COEFFICIENTS, Tableau, interpolate};
 use crate::solve::integrator::dense::{FROM_ENDS, Polynomial};
-use crate::solve::integrator::side_by_side::SIDE_BY_SIDE;
+use crate::solve::integrator::side_by_side::{Padded, SIDE_BY_SIDE};
 use crate::solve::integrator::steps::Begin;
 use crate::solve::integrator::tolerances::largest_of;
 use crate::solve::integrator::{Arch, Flow, PointRef, Scale, is_finite};
@@ -24,10 +24,11 @@ pub(super) struct Halves<T> {
     stages: Stages<T, f64, SIDE_BY_SIDE>,
     polynomials: [Polynomial<COEFFICIENTS>; 2],
     /// The state between them and its rate.
-    middle: Vec<f64>,
+    middle: Padded<f64, SIDE_BY_SIDE>,
     rate: Vec<f64>,
-    /// Room for a state.
+    /// Room for a state, and for the way there.
     there: Vec<f64>,
+    way: Padded<f64, SIDE_BY_SIDE>,
     /// Whether they are better than the whole step.
     are_better: bool,
 }
@@ -35,18 +36,15 @@ pub(super) struct Halves<T> {
 impl<T: Tableau> Halves<T> {
     /// Room for so many states.
     pub fn new(states: usize) -> Self {
-        let polynomial = || {
-            let mut polynomial = Polynomial::new();
-            polynomial.fit(states);
-            polynomial
-        };
+        let polynomial = || Polynomial::new(states);
         let room = || alloc::vec![0.0; states];
         Self {
             stages: Stages::new(states),
             polynomials: [polynomial(), polynomial()],
-            middle: room(),
+            middle: Padded::new(states, 0.0),
             rate: room(),
             there: room(),
+            way: Padded::new(states, 0.0),
             are_better: false,
         }
     }
@@ -61,11 +59,11 @@ impl<T: Tableau> Halves<T> {
     ) {
         self.are_better = false;
         let allowed = |i: usize| scale.allowed_between(i, start.x[i], end.x[i]);
-        let whole = error((stages, polynomial), arch, start, h, &allowed, &mut self.there);
+        let whole = error((stages, polynomial), arch, start, h, &allowed, (&mut self.there, &mut self.way));
         if !(LIMIT..HOPELESS).contains(&whole) {
             return;
         }
-        let Self { stages, polynomials: [first, second], middle, rate, there, .. } = self;
+        let Self { stages, polynomials: [first, second], middle, rate, there, way, .. } = self;
         let half = 0.5 * h;
         stages.begin(start.rate);
         stages.evaluate(flow, &Begin::of(start, half), 1..T::END, &mut ());
@@ -74,11 +72,11 @@ impl<T: Tableau> Halves<T> {
         flow.rate(start.t + half, middle, rate);
         let between = PointRef { t: start.t + half, x: middle, rate };
         interpolate((stages, first), flow, start, half, between);
-        let mut halves = error((stages, first), arch, start, half, &allowed, there);
+        let mut halves = error((stages, first), arch, start, half, &allowed, (&mut *there, &mut *way));
         stages.begin(between.rate);
         stages.evaluate(flow, &Begin::of(between, half), 1..T::END, &mut ());
         interpolate((stages, second), flow, between, half, end);
-        halves += error((stages, second), arch, between, half, &allowed, there);
+        halves += error((stages, second), arch, between, half, &allowed, (&mut *there, &mut *way));
         self.are_better = halves < whole;
     }
 
@@ -108,13 +106,14 @@ fn error<T: Tableau>(
     start: PointRef<'_>,
     h: f64,
     allowed: &impl Fn(usize) -> f64,
-    there: &mut [f64],
+    (there, way): (&mut [f64], &mut Padded<f64, SIDE_BY_SIDE>),
 ) -> f64 {
     let Some((stage, times)) = T::DENSE_ERROR else { return 0.0 };
     polynomial.evaluate(arch, FROM_ENDS + T::DENSE.len(), start, T::C[stage], there);
     if !is_finite(there) {
         return f64::INFINITY;
     }
-    let off = |i: usize| (there[i] - (start.x[i] + h * stages.combine(T::A[stage], i))).abs();
+    stages.write(T::A[stage], h, way);
+    let off = |i: usize| (there[i] - (start.x[i] + way[i])).abs();
     times * largest_of(there.len(), |i| off(i) / allowed(i))
 }

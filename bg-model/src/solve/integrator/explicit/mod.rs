@@ -20,8 +20,6 @@ mod transposed;
 #[cfg(test)]
 mod vectors;
 
-use alloc::vec::Vec;
-
 pub use bs5::BogackiShampine;
 pub use cfmr7::CalvoFrancoMontijanoRandez;
 pub use dop853::DormandPrince;
@@ -29,7 +27,7 @@ use halves::Halves;
 
 use super::compensated::CompensatedSum;
 use super::dense::{FROM_ENDS, Polynomial};
-use super::side_by_side::SIDE_BY_SIDE;
+use super::side_by_side::{Padded, SIDE_BY_SIDE};
 use super::steps::Begin;
 use super::tolerances::{index_of_largest, largest_of, smaller};
 use super::vectors::{Vectorised, attempt_in};
@@ -113,7 +111,7 @@ pub struct Explicit<T> {
     sum: CompensatedSum<f64, SIDE_BY_SIDE>,
     /// States at the end of a step, as they are and moved by a difference, after their projection; the latter is also
     /// room for a difference.
-    projected: [Vec<f64>; 2],
+    projected: [Padded<f64, SIDE_BY_SIDE>; 2],
     /// The norm of the last attempt's error by the first difference.
     alone: f64,
     /// The machine's vectors.
@@ -126,10 +124,10 @@ impl<T: Tableau> Explicit<T> {
     pub fn new() -> Self {
         Self {
             stages: Stages::new(0),
-            polynomial: Polynomial::new(),
+            polynomial: Polynomial::new(0),
             halves: Halves::new(0),
             sum: CompensatedSum::new(0),
-            projected: [const { Vec::new() }; 2],
+            projected: [Padded::new(0, 0.0), Padded::new(0, 0.0)],
             alone: 0.0,
             arch: Arch::new(),
         }
@@ -227,8 +225,8 @@ impl<T: Tableau> Method for Explicit<T> {
             if T::DENSE_ERROR.is_some() {
                 self.halves = Halves::new(states);
             }
-            self.polynomial.fit(states);
-            self.projected.iter_mut().for_each(|projected| projected.resize(states, 0.0));
+            self.polynomial = Polynomial::new(states);
+            self.projected = [Padded::new(states, 0.0), Padded::new(states, 0.0)];
         }
     }
 

@@ -11,12 +11,15 @@ use super::{Row, Tableau};
 use crate::model::scalar::Scalar;
 use crate::solve::integrator::Scale;
 use crate::solve::integrator::compensated::{CompensatedSum, compensated};
-use crate::solve::integrator::side_by_side::{Padded, Stack};
+use crate::solve::integrator::side_by_side::{Padded, Stack, put, some};
 use crate::solve::integrator::steps::{Begin, Rates};
 use crate::solve::integrator::tolerances::largest;
 
 /// The most stages of a method.
 pub(super) const STAGES: usize = 16;
+/// In its place among the numbers of a group: the state at the start of the step.
+const START: usize = STAGES;
+const ROWS: usize = STAGES + 1;
 
 /// What a method adds to the states of an explicit one.
 pub(crate) trait Complete<S> {
@@ -30,14 +33,14 @@ impl<S> Complete<S> for () {
     fn complete(&mut self, _stage: usize, _x: &mut [S]) {}
 }
 
-/// The rates of all stages of tableau `T`, with room for what steps need beside them: in groups of `W` states.
+/// The rates of all stages of tableau `T` and the start of the step, with room for what steps need beside them: in
+/// groups of `W` states.
 #[derive(Clone, Debug)]
 pub(crate) struct Stages<T, S, const W: usize> {
-    k: Stack<S, W, STAGES>,
-    /// The state of a stage and its rate; the states at the start and at the end of the step.
+    k: Stack<S, W, ROWS>,
+    /// The state of a stage and the rate of the one before it; the state at the end of the step.
     x: Padded<S, W>,
     rate: Padded<S, W>,
-    start: Padded<S, W>,
     pub end: Padded<S, W>,
     /// The absolute tolerances.
     absolute: Padded<S, W>,
@@ -55,7 +58,6 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
             k: Stack::new(states, 0, zero),
             x: room(),
             rate: room(),
-            start: room(),
             end: room(),
             absolute: Padded::new(states, one),
             differences: [room(), room()],
@@ -91,14 +93,19 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
     }
 
     /// Writes the linear combinations of the stages for all states, times `h`.
-    pub fn write(&self, row: Row, h: S, out: &mut [S]) {
-        for ((_, k), out) in self.k.groups().iter().zip(out.chunks_mut(W)) {
-            out.iter_mut().zip(combined(k, row)).for_each(|(out, sum)| *out = sum * h);
+    pub fn write(&self, row: Row, h: S, out: &mut Padded<S, W>) {
+        for (first, k) in self.k.groups() {
+            let mut group = combined(k, row);
+            for sum in &mut group {
+                *sum = *sum * h;
+            }
+            out.set_group(*first, group);
         }
     }
 
-    /// Evaluates these stages, whose states `completed` completes. Their sums are written out, so that each finds its
-    /// weights as constants; the rate stands there once, which is less to compile and takes no longer.
+    /// Evaluates these stages behind the one whose rates were taken last; `completed` completes their states. Their
+    /// sums are written out, so that each finds its weights as constants; the rate stands there once, which is less to
+    /// compile and takes no longer.
     #[inline(always)]
     pub fn evaluate(
         &mut self,
@@ -107,14 +114,16 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
         stages: Range<usize>,
         completed: &mut impl Complete<S>,
     ) {
-        self.start.copy_from_slice(from.x);
+        self.x.copy_from_slice(from.x);
+        self.k.set_row(START, &self.x);
+        let last = stages.end - 1;
         for stage in stages {
-            self.move_to(stage, from.h);
+            self.move_to::<true>(stage, from.h);
             completed.complete(stage, &mut self.x);
             let t = from.t + from.h.times(T::C[stage]);
             rates.inlined_rate(t, &self.x, &mut self.rate);
-            self.k.set_row(stage, &self.rate);
         }
+        self.k.set_row(last, &self.rate);
     }
 
     /// The state of a stage of the last step, of size `h`.
@@ -122,26 +131,31 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
     #[inline(always)]
     pub fn state(&mut self, stage: usize, h: S) -> &[S] {
         if stage == 0 {
-            return &self.start;
+            self.k.groups().iter().for_each(|(first, k)| self.x.set_group(*first, k[START]));
+        } else {
+            self.move_to::<false>(stage, h);
         }
-        self.move_to(stage, h);
         &self.x
     }
 
-    /// Moves the state on from the start to a stage that comes after it.
+    /// Moves the state on from the start to a stage that comes after it, and takes the rates of the one before it if it
+    /// has to.
     #[inline(always)]
-    fn move_to(&mut self, stage: usize, h: S) {
-        let Self { k, x, start, .. } = self;
+    fn move_to<const TAKES: bool>(&mut self, stage: usize, h: S) {
+        let [x, rate] = Padded::with_room([&mut self.x, &mut self.rate]);
         macro_rules! written_out {
             ($($stage:literal)*) => {
                 match stage {
                     $( $stage if $stage < T::A.len() => {
-                        for (first, k) in k.groups() {
-                            let (from_start, mut to) = (start.group(*first), combined(k, T::A[$stage]));
-                            for i in 0..W {
-                                to[i] = from_start[i] + h * to[i];
+                        for (first, k) in self.k.groups_mut() {
+                            if TAKES {
+                                k[$stage - 1] = some(rate, *first);
                             }
-                            x.set_group(*first, to);
+                            let (start, mut to) = (k[START], combined(k, T::A[$stage]));
+                            for i in 0..W {
+                                to[i] = start[i] + h * to[i];
+                            }
+                            put(x, *first, to);
                         }
                     } )*
                     _ => unreachable!("a tableau has fewer stages than there is room for"),
@@ -172,9 +186,10 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
         self.begin(from.rate);
         self.evaluate(rates, from, 1..T::END, &mut ());
         self.absolute.copy_from_slice(&scale.absolute);
-        let Self { k, start, end: reached, absolute, differences: [of_first, of_second], .. } = self;
+        let Self { k, end: reached, absolute, differences: [of_first, of_second], .. } = self;
+        let [reached, absolute, of_first, of_second] = Padded::with_room([reached, absolute, of_first, of_second]);
         for (first, k) in k.groups() {
-            let (start, absolute) = (start.group(*first), absolute.group(*first));
+            let (start, absolute): (_, [S; W]) = (k[START], some(absolute, *first));
             let slopes = combined(k, T::B);
             let mut to = start;
             if T::IS_COMPENSATED {
@@ -189,7 +204,7 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
                     to[i] = start[i] + from.h * slopes[i];
                 }
             }
-            reached.set_group(*first, to);
+            put(reached, *first, to);
             let mut allowed = to;
             for i in 0..W {
                 allowed[i] = scale.allowed_from(absolute[i], start[i], to[i]);
@@ -204,18 +219,18 @@ impl<T: Tableau, S: Scalar, const W: usize> Stages<T, S, W> {
             for i in 0..W {
                 errors[i] = (errors[i] / allowed[i]).abs();
             }
-            of_first.set_group(*first, errors);
+            put(of_first, *first, errors);
             if !T::SECOND.is_empty() {
                 let mut errors = combined(k, T::SECOND);
                 for i in 0..W {
                     errors[i] = ((slopes[i] - errors[i]) / allowed[i]).abs();
                 }
-                of_second.set_group(*first, errors);
+                put(of_second, *first, errors);
             }
         }
-        end.copy_from_slice(reached);
-        let second = if T::SECOND.is_empty() { from.h.alike(0.0) } else { largest(of_second) };
-        [largest(of_first), second]
+        end.copy_from_slice(&self.end);
+        let [first, second] = &self.differences;
+        [largest(first), if T::SECOND.is_empty() { from.h.alike(0.0) } else { largest(second) }]
     }
 }
 
@@ -234,7 +249,7 @@ impl<T, S: Scalar, const W: usize> Stages<T, S, W> {
 
 /// The linear combinations of the stages `k` of a group by a row, each summed in its order.
 #[inline(always)]
-fn combined<S: Scalar, const W: usize>(k: &[[S; W]; STAGES], row: Row) -> [S; W] {
+fn combined<S: Scalar, const W: usize>(k: &[[S; W]; ROWS], row: Row) -> [S; W] {
     // Adding to -0 changes nothing, not even the sign of a zero.
     let mut sums = [k[0][0].alike(-0.0); W];
     for (stage, weight) in row {

@@ -56,7 +56,7 @@ impl Nystrom {
     /// The method, its work space empty.
     #[must_use]
     pub fn new() -> Self {
-        let (stages, ring, polynomial) = (Stages::new(0), Ring::new(0), Polynomial::new());
+        let (stages, ring, polynomial) = (Stages::new(0), Ring::new(0), Polynomial::new(0));
         Self { stages, ring, polynomial, arch: Arch::new(), counted: 1.0 }
     }
 
@@ -91,7 +91,7 @@ impl Method for Nystrom {
     fn fit(&mut self, states: usize) {
         if self.stages.states() != states {
             (self.stages, self.ring) = (Stages::new(states), Ring::new(states));
-            self.polynomial.fit(states);
+            self.polynomial = Polynomial::new(states);
         }
     }
 
@@ -132,16 +132,7 @@ impl Method for Nystrom {
             flow.second_derivatives(end.x, rate);
         });
         let Self { stages, polynomial, .. } = self;
-        polynomial.set(start, h, end, |m, ends, out| {
-            stages.write(&DENSE[m], h, out);
-            for (i, [before, behind]) in stages.ends() {
-                let [first, third] = [1, 2].map(|m| ends[m][i]);
-                // The polynomial of degree 5 through the second derivatives at both ends, too.
-                let [before, behind] = [before, behind].map(|second| 0.5 * h * h * second);
-                let at_start = before + first - third;
-                out[i] = if m == 0 { at_start } else { behind + first + 2.0 * third - at_start };
-            }
-        });
+        polynomial.set(start, h, end, |m, ends, out| stages.write_dense(m, h, ends, out));
     }
 
     fn dense(&self, start: PointRef<'_>, _h: f64, _end: PointRef<'_>, theta: f64, x: &mut [f64]) {
