@@ -7,7 +7,8 @@ use bg_model::input::Input;
 use bond_graph_tests::fuzz::{self, Kind};
 use bond_graph_tests::linear::draw::{FULL, LOOSE, VECTORS, network};
 
-use super::{BACK_ENDS, Compared, loaded, same_functions, same_runs};
+use super::functions::{Compared, same_functions, same_runs};
+use super::{BACK_ENDS, loaded};
 
 /// How many of these texts have models that can start; all of them have equal bits.
 fn compared(texts: impl Iterator<Item = String>) -> usize {

@@ -3,10 +3,10 @@
 import { readFileSync } from "node:fs";
 import { answering } from "./src/module.js";
 
-const answer = await answering(await WebAssembly.compile(readFileSync(process.argv[2])));
+const { answer, functions } = await answering(await WebAssembly.compile(readFileSync(process.argv[2])));
 for (const order of readFileSync(0, "utf8").split("\n").filter(Boolean)) {
   const begin = performance.now();
   const text = await answer(order);
-  console.error(`${(performance.now() - begin).toFixed(1)} ms, ${text.length} characters`);
+  console.error(`${(performance.now() - begin).toFixed(1)} ms, ${text.length} characters, ${functions()} functions of machine code`);
   process.stdout.write(`${text}\n`);
 }

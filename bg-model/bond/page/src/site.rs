@@ -32,11 +32,13 @@ const WORDS: &str = "words.json";
 const FIRST: &str = "first.html";
 
 /// What is made small rather than fast, since it does not run once for each step, and how: a third of the whole module.
-const SMALL: [(&str, &str); 19] = [
+const SMALL: [(&str, &str); 22] = [
     ("bg-analysis", "z"),
     ("bg-compiler", "z"),
     // What a compilation calculates with: at "s" a compilation takes a sixth less, the module 2 % more.
     ("bg-expressions", "z"),
+    ("bg-loaded", "s"),
+    ("bg-native", "z"),
     ("bg-picture", "z"),
     ("bg-units", "z"),
     ("bg-workbench", "z"),
@@ -52,6 +54,7 @@ const SMALL: [(&str, &str); 19] = [
     ("toml_datetime", "z"),
     ("toml_parser", "z"),
     ("toml_writer", "z"),
+    ("wasm-encoder", "z"),
     ("winnow", "z"),
 ];
 

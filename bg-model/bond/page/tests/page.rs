@@ -47,6 +47,8 @@ fn questions() -> Vec<Value> {
         json!({ "ask": "words", "text": first }),
         json!({ "ask": "compile", "text": text("slider_crank"), "graph": "Other", "scene": "planar-slider-crank" }),
         json!({ "ask": "report", "t_end": 0.1 }),
+        json!({ "ask": "compile", "text": text("hacksaw"), "graph": null, "scene": "motion" }),
+        json!({ "ask": "report", "t_end": 0.2 }),
         json!({ "ask": "answer" }),
     ]
 }
@@ -123,7 +125,8 @@ fn what_is_compiled_can_be_chosen_and_run() {
     );
     assert_eq!(answers[11]["chosen"], json!(["SliderCrank", "planar-slider-crank"]), "a graph that is there");
     assert!(answers[12]["page"].as_str().expect("a page").contains("<h1>SliderCrank: PlanarSliderCrank</h1>"));
-    assert!(answers[13]["fault"].as_str().unwrap().starts_with("the question cannot be read: "));
+    assert!(answers[14]["page"].as_str().expect("a page").contains("<h1>Hacksaw: Motion</h1>"));
+    assert!(answers[15]["fault"].as_str().unwrap().starts_with("the question cannot be read: "));
 }
 
 #[test]
@@ -136,12 +139,15 @@ fn webassembly_gives_the_bits_that_the_native_compiler_gives() {
     let questions: Vec<String> = questions().iter().map(Value::to_string).collect();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../workbench/page/live.js");
     let mut node = Command::new("node");
-    node.arg(script).arg(site.join("bond.wasm")).stdin(Stdio::piped()).stdout(Stdio::piped());
+    node.arg(script).arg(site.join("bond.wasm")).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut node = node.spawn().expect("node starts");
     node.stdin.take().unwrap().write_all(questions.join("\n").as_bytes()).unwrap();
     let output = node.wait_with_output().unwrap();
     let answers = String::from_utf8(output.stdout).unwrap();
     assert_eq!(answers.lines().count(), questions.len());
+    let told = String::from_utf8(output.stderr).unwrap();
+    let has_machine_code = |line: &&str| !line.ends_with(" 0 functions of machine code");
+    assert!(told.lines().filter(has_machine_code).count() >= 2, "the run of the hacksaw has machine code: {told}");
     let answerer = Answerer::default();
     for (question, answer) in questions.iter().zip(answers.lines()) {
         assert!(answerer.answer(question) == answer, "the answers to {question} differ");
@@ -177,7 +183,7 @@ fn a_browser_compiles_while_one_types() {
     assert_eq!(verdict["faults"], json!([]));
     assert!(verdict["motion_ms"].as_f64().is_some_and(|time| time < 20_000.0), "the machine moves");
     let status = verdict["status"].as_str().unwrap();
-    assert!(status.contains("Compiled in ") && status.contains("interpreted"), "{status}");
+    assert!(status.contains("Compiled in ") && status.contains("in machine code"), "{status}");
     assert_eq!((&verdict["title"], &verdict["bonds"]), (&json!("Pendulum"), &json!(23)));
     assert!(verdict["charts"].as_u64().is_some_and(|count| count >= 3));
     assert_eq!(verdict["overflow"], 0, "nothing is wider than the window");

@@ -19,7 +19,7 @@ for (const name of ["first", "hacksaw"]) {
   const { text, scene } = examples.find((example) => example.name === name);
   const times = { compile: [], report: [], rate: [] };
   for (let round = 0; round < 5; round += 1) {
-    const answer = await answering(module);
+    const { answer } = await answering(module);
     const asked = async (question) => {
       const begin = performance.now();
       const told = JSON.parse(await answer(JSON.stringify(question)));

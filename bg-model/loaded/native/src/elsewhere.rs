@@ -1,32 +1,26 @@
 //! Machines without a back end: nothing is translated.
 
-use crate::program::{Inputs, Program};
+use crate::function::Entry;
+use crate::steps::Steps;
 
-/// A program in machine code: there is none on this machine.
-#[derive(Debug)]
-pub enum Function {}
+/// The machine at hand: there is none.
+pub enum Machine {}
 
-impl Function {
-    /// None.
-    #[must_use]
-    pub fn of(_program: &Program) -> Option<Self> {
+/// What it compiles: nothing.
+pub enum Compiled {}
+
+impl Machine {
+    pub fn at_hand() -> Option<Self> {
         None
     }
 
-    /// Never called.
-    #[must_use]
-    pub fn appended(&self) -> &[(u32, bool)] {
+    pub fn compiled(&self, _steps: &Steps) -> Option<Compiled> {
         match *self {}
     }
+}
 
-    /// Never called.
-    #[must_use]
-    pub fn operations(&self) -> usize {
-        match *self {}
-    }
-
-    /// Never called.
-    pub fn call(&self, _inputs: Inputs<'_>, _results: &mut [f64]) {
+impl Compiled {
+    pub fn entry(&self) -> Entry {
         match *self {}
     }
 }

@@ -1,31 +1,41 @@
 //! Straight-line programs of models to machine code, while a program runs.
 //!
 //! In: a [`Program`] of flat single assignments. Out: a [`Function`] over slices, made by Cranelift for the machine at
-//! hand; none where that has no back end. Each operation is the program's, nothing is fused, reordered in a sum or left
+//! hand, or by the engine that runs this program where that is WebAssembly; none where there is no back end. Each operation is the program's, nothing is fused, reordered in a sum or left
 //! to another library: functions are those that [`bg_model::scalar::Scalar`] has for `f64`. So the values have the bits
 //! of an interpreter and of code by rustc.
 //!
 //! | module | question it answers |
 //! |---|---|
 //! | `program` | what is translated |
+//! | `function` | how machine code is called |
 //! | `steps` | which steps it takes, on numbers and on pairs of them; in which order, what of it is needed |
-//! | `back_end` | where machine code is, how it is called: the one place with `unsafe` |
-//! | `back_end::functions` | which functions machine code calls |
-//! | `back_end::translate` | a program to instructions |
-//! | `elsewhere` | what stands for `back_end` where there is none |
+//! | `functions` | which functions it calls |
+//! | `cranelift` | where machine code is on x86-64 and aarch64; `translate`: steps to instructions |
+//! | `webassembly` | where it is in WebAssembly; `module`: steps to the bytes of a module |
+//! | `elsewhere` | what stands for these where there is no back end |
 
-#[cfg(all(feature = "cranelift", any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg(all(feature = "machine-code", any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[path = "cranelift/mod.rs"]
 mod back_end;
-#[cfg(not(all(feature = "cranelift", any(target_arch = "x86_64", target_arch = "aarch64"))))]
+#[cfg(all(feature = "machine-code", target_arch = "wasm32"))]
+#[path = "webassembly/mod.rs"]
+mod back_end;
+#[cfg(not(all(
+    feature = "machine-code",
+    any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")
+)))]
 #[path = "elsewhere.rs"]
 mod back_end;
-#[cfg_attr(
-    not(all(feature = "cranelift", any(target_arch = "x86_64", target_arch = "aarch64"))),
-    allow(dead_code, reason = "what is not translated needs no lengths")
-)]
+mod function;
+#[cfg(all(feature = "machine-code", any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
+mod functions;
 mod program;
-#[cfg(all(feature = "cranelift", any(target_arch = "x86_64", target_arch = "aarch64")))]
+#[cfg_attr(
+    not(all(feature = "machine-code", any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"))),
+    allow(dead_code, reason = "what is not translated needs no instructions")
+)]
 mod steps;
 
-pub use back_end::Function;
+pub use function::Function;
 pub use program::{Inputs, Operand, Pairing, Program};

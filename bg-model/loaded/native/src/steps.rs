@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use bg_expressions::expr::Symbol;
+use bg_expressions::expr::{Function, Symbol};
 use bg_expressions::schedule::pairs::{Half, Paired, Search, Step as PairedStep, Value, pair};
 use bg_expressions::schedule::{self, Assignment, Counts, Operation, Routine};
 
@@ -44,6 +44,22 @@ pub enum Given {
     Number(Operand),
     Pair(Operand),
 }
+
+/// How a pair is made of two numbers.
+#[derive(Clone, Copy, Debug)]
+pub enum Gathered {
+    /// Of numbers of two pairs: each a pair, and which of its numbers.
+    OfPairs([(Operand, u8); 2]),
+    /// A pair of which one number is another one.
+    Replaced { pair: Operand, half: u8, number: Operand },
+    /// One number twice.
+    Twice(Operand),
+    /// Of numbers that stand in their place of no pair.
+    Numbers([Operand; 2]),
+}
+
+/// Results with the place of the first.
+pub type Placed = Vec<(Given, usize)>;
 
 impl Step {
     pub fn operands(&self) -> Vec<Operand> {
@@ -119,6 +135,56 @@ impl Steps {
         results.sort_by_key(|&of| depths[of]);
         results.into_iter().for_each(|of| order.enter(of));
         order.done
+    }
+
+    /// The functions that are called: by which steps, with which arguments.
+    pub fn calls(&self) -> impl Iterator<Item = (usize, Function, &[Operand])> {
+        self.steps.iter().enumerate().filter_map(|(of, step)| match step {
+            Step::Number(Operation::Call(function, arguments)) => Some((of, *function, &arguments[..])),
+            _ => None,
+        })
+    }
+
+    /// Of sines and cosines of the same angles each one's other.
+    pub fn partners(&self) -> HashMap<usize, usize> {
+        let of = |wanted: Function| {
+            let calls = self.calls().filter(move |&(_, function, _)| function == wanted);
+            calls.map(|(of, _, arguments)| (arguments[0], of))
+        };
+        let sines: HashMap<Operand, usize> = of(Function::Sin).collect();
+        let pairs = of(Function::Cos).filter_map(|(angle, of)| sines.get(&angle).map(|&sine| [(of, sine), (sine, of)]));
+        pairs.flatten().collect()
+    }
+
+    /// Of each step the results that are its value, and the other results.
+    pub fn places(&self) -> (Vec<Placed>, Placed) {
+        let (mut of_steps, mut of_inputs) = (vec![Vec::new(); self.steps.len()], Vec::new());
+        let mut place = 0;
+        for &given in &self.results {
+            given.operand().value().map_or(&mut of_inputs, |of| &mut of_steps[of]).push((given, place));
+            place += given.count();
+        }
+        (of_steps, of_inputs)
+    }
+
+    /// How the pair of two numbers is made, in one step where one of them stands in its place of another pair already.
+    pub fn gathered(&self, both: [Operand; 2]) -> Gathered {
+        let [first, second] = both;
+        match both.map(|number| self.half_of(number)) {
+            [Some(first), Some(second)] => Gathered::OfPairs([first, second]),
+            [Some((pair, 0)), None] => Gathered::Replaced { pair, half: 1, number: second },
+            [None, Some((pair, 1))] => Gathered::Replaced { pair, half: 0, number: first },
+            _ if first == second => Gathered::Twice(first),
+            _ => Gathered::Numbers(both),
+        }
+    }
+
+    /// The pair that a number is of, and which of its numbers it is.
+    fn half_of(&self, number: Operand) -> Option<(Operand, u8)> {
+        match self.steps[number.value()?] {
+            Step::Half(pair, half) => Some((pair, half)),
+            _ => None,
+        }
     }
 
     /// Of each step how many steps its value takes one after the other, and how many registers (R. Sethi, J. Ullman,

@@ -12,7 +12,7 @@ addEventListener("message", async ({ data }) => {
     return;
   }
   try {
-    const answer = await model;
+    const { answer } = await model;
     const begin = performance.now();
     const text = await answer(data);
     postMessage({ answer: text, milliseconds: performance.now() - begin });

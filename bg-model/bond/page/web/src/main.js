@@ -212,8 +212,10 @@ class Page {
 
   /** How long an evaluation of the rate takes. */
   async #measure(version) {
+    let how = "";
     const once = async (count) => {
-      const { answer, milliseconds } = await this.runner.ask({ ask: "rate", count });
+      const { answer, milliseconds, functions } = await this.runner.ask({ ask: "rate", count });
+      how = functions > 0 ? "in machine code" : "interpreted";
       return answer.fault === undefined ? milliseconds : null;
     };
     // A machine that does other things meanwhile makes one of the two longer.
@@ -231,7 +233,7 @@ class Page {
     }
     if (spent === null || version !== this.#version) return;
     this.rate = (spent - made) / count;
-    this.#says.rate = `; the rate takes ${lasting(this.rate)} each time, interpreted`;
+    this.#says.rate = `; the rate takes ${lasting(this.rate)} each time, ${how}`;
     if (this.faults.length === 0) this.#tell();
   }
 

@@ -36,12 +36,12 @@ export class Compiler {
       const { resolve, reject, timer } = this.#waiting.get(number);
       this.#waiting.delete(number);
       clearTimeout(timer);
-      if (fault === undefined) resolve({ answer: JSON.parse(told.answer), milliseconds: told.milliseconds });
+      if (fault === undefined) resolve({ ...told, answer: JSON.parse(told.answer) });
       else reject(new Error(`the compiler stopped: ${fault}`));
     };
   }
 
-  /** The answer to a question, and how long it took; a fresh one is asked of a fresh instance of the module. */
+  /** The answer to a question, how long it took, and how much machine code there is; a fresh one is asked of a fresh instance of the module. */
   ask(question, { fresh = false } = {}) {
     this.start();
     this.#number += 1;

@@ -1,11 +1,10 @@
+//! Random programs, alone and twice in the axes of a plane, by a function and one operation after the other.
+
 use bg_expressions::expr;
 use bg_expressions::schedule::Operation;
 use bg_model::scalar::Scalar;
+use bg_native::{Function, Inputs, Operand, Pairing, Program};
 use fastrand::Rng;
-
-use super::{Function, LONGEST};
-use crate::program::{Inputs, Operand, Pairing, Program};
-use crate::steps::{Step, Steps};
 
 const LENGTHS: [usize; 4] = [5, 4, 3, 2];
 const FUNCTIONS: [expr::Function; 12] = [
@@ -84,6 +83,16 @@ fn in_a_plane(random: &mut Rng) -> Program {
     Program { operations, results, pairing: Pairing::Sought }
 }
 
+/// How many numbers are fixed.
+fn fixed_of(program: &Program) -> usize {
+    let operands = program.operations.iter().flat_map(Operation::operands).chain(program.results.iter().copied());
+    let places = operands.filter_map(|operand| match operand {
+        Operand::Fixed(place) => Some(place as usize + 1),
+        _ => None,
+    });
+    places.max().unwrap_or(0)
+}
+
 /// One operation after the other.
 fn evaluated(program: &Program, inputs: Inputs<'_>) -> Vec<f64> {
     let mut values: Vec<f64> = Vec::new();
@@ -143,22 +152,33 @@ fn bits(of: &[f64]) -> Vec<u64> {
     of.iter().map(|value| if value.is_nan() { u64::MAX } else { value.to_bits() }).collect()
 }
 
-#[test]
-fn random_programs_have_the_bits_of_one_operation_after_the_other() {
+/// What was compared.
+pub struct Compared {
+    /// Results that are numbers.
+    pub numbers: usize,
+    /// Functions that have fewer operations by pairs of them.
+    pub paired: usize,
+}
+
+/// Compares functions of programs with one operation after the other.
+///
+/// # Panics
+/// A bit differs, or there is no function of a program.
+pub fn compare() -> Compared {
     let mut random = Rng::with_seed(11);
-    let (mut numbers, mut pairs) = (0, 0);
+    let mut compared = Compared { numbers: 0, paired: 0 };
     for round in 0..400 {
         let program = if round % 2 == 0 { program(&mut random) } else { in_a_plane(&mut random) };
-        let steps = Steps::of(&program, program.lengths().fixed).steps;
-        pairs += steps.iter().filter(|step| matches!(step, Step::Pair(_))).count();
         let function = Function::of(&program).expect("this machine has a back end");
+        let alone = Function::of(&Program { pairing: Pairing::None, ..program.clone() }).expect("as well");
+        compared.paired += usize::from(function.operations() < alone.operations());
         for _ in 0..4 {
             let mut draw = |count: usize| -> Vec<f64> {
                 // Zeros of both signs are among them.
                 (0..count).map(|_| [0.0, -0.0, 4.0 * random.f64() - 2.0][random.usize(..3)]).collect()
             };
             let [mut fixed, states, read] = [LENGTHS[0], LENGTHS[1], LENGTHS[2]].map(|count| draw(2 * count));
-            fixed.truncate(program.lengths().fixed);
+            fixed.truncate(fixed_of(&program));
             for &(place, is_negative) in function.appended() {
                 fixed.push(if is_negative { -fixed[place as usize] } else { fixed[place as usize] });
             }
@@ -167,89 +187,8 @@ fn random_programs_have_the_bits_of_one_operation_after_the_other() {
             let mut results = vec![7.0; program.results.len()];
             function.call(inputs, &mut results);
             assert_eq!(bits(&results), bits(&evaluated(&program, inputs)), "{round}: {program:?}");
-            numbers += results.iter().filter(|result| result.is_finite()).count();
+            compared.numbers += results.iter().filter(|result| result.is_finite()).count();
         }
     }
-    assert!(numbers > 1000 && pairs > 300, "{numbers} {pairs}");
-}
-
-fn sum() -> Function {
-    let operations = vec![
-        Operation::Add(Operand::State(1), Operand::Read(0)),
-        Operation::Select { switch: 1, negative: Operand::Value(0), positive: Operand::Fixed(2) },
-    ];
-    Function::of(&Program { operations, results: vec![Operand::Value(1)], pairing: Pairing::None })
-        .expect("this machine has a back end")
-}
-
-fn call(fixed: usize, states: usize, read: usize, switches: usize, results: usize) {
-    let numbers = [1.0; 8];
-    let (fixed, states, read, negative) =
-        (&numbers[..fixed], &numbers[..states], &numbers[..read], &[false; 4][..switches]);
-    sum().call(Inputs { fixed, states, read, negative }, &mut vec![0.0; results]);
-}
-
-#[test]
-fn slices_of_the_right_length_are_taken() {
-    call(3, 2, 1, 2, 1);
-    call(8, 8, 8, 4, 1);
-}
-
-macro_rules! refused {
-    ($($name:ident: $($length:literal)*;)*) => {
-        $(#[test]
-        #[should_panic(expected = "a place for")]
-        fn $name() {
-            call($($length),*);
-        })*
-    };
-}
-
-refused! {
-    too_few_that_are_fixed: 2 2 1 2 1;
-    too_few_states: 3 1 1 2 1;
-    too_few_that_are_read: 3 2 0 2 1;
-    too_few_switches: 3 2 1 1 1;
-    too_few_results: 3 2 1 2 0;
-    too_many_results: 3 2 1 2 2;
-}
-
-#[test]
-#[should_panic(expected = "values are taken after they are there")]
-fn a_value_before_it_is_there_is_refused() {
-    let operations = vec![Operation::Negate(Operand::Value(0))];
-    let _ = Function::of(&Program { operations, ..Program::default() });
-}
-
-#[test]
-fn functions_may_be_shared_and_dropped() {
-    let function = sum();
-    std::thread::scope(|scope| {
-        for _ in 0..4 {
-            scope.spawn(|| {
-                let mut results = [0.0];
-                function.call(
-                    Inputs { fixed: &[1.0; 3], states: &[2.0; 2], read: &[3.0], negative: &[true; 2] },
-                    &mut results,
-                );
-                assert_eq!(results, [5.0]);
-            });
-        }
-    });
-    (0..200).for_each(|_| drop(sum()));
-}
-
-#[test]
-fn the_longest_program_is_translated_and_no_longer_one() {
-    let program = |length: usize| {
-        let value = |of: usize| Operand::Value(u32::try_from(of).expect("few values"));
-        let operand = |of: usize| if of == 0 { Operand::State(0) } else { value(of - 1) };
-        let operations = (0..length).map(|of| Operation::Add(operand(of), Operand::Fixed(0))).collect();
-        Program { operations, results: vec![value(length - 1)], pairing: Pairing::Sought }
-    };
-    let function = Function::of(&program(LONGEST)).expect("this machine has a back end");
-    let mut results = [0.0];
-    function.call(Inputs { fixed: &[0.5], states: &[1.0], read: &[], negative: &[] }, &mut results);
-    assert_eq!(results, [1.0 + 0.5 * LONGEST as f64]);
-    assert!(Function::of(&program(LONGEST + 1)).is_none());
+    compared
 }

@@ -18,9 +18,9 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::JITModule;
 use cranelift_module::{FuncId, Linkage, Module};
 
-use super::functions::{SINE_AND_COSINE, called};
+use crate::functions::{SINE_AND_COSINE, called};
 use crate::program::Operand;
-use crate::steps::{Given, Step, Steps};
+use crate::steps::{Gathered, Given, Step, Steps};
 
 /// An input is read again where its last use is more steps ago: kept longer, it takes a register that values need
 /// more (`docs/benchmarks/text.md`).
@@ -44,7 +44,7 @@ pub fn translate(module: &mut JITModule, steps: &Steps) -> Option<FuncId> {
     let values = vec![None; steps.steps.len()];
     let inputs = Loads { addresses: [fixed, states, read], used: HashMap::new() };
     let mut body = Body { builder, steps, functions, address, inputs, negative, values, written: 0 };
-    let (of_steps, of_inputs) = places(steps);
+    let (of_steps, of_inputs) = steps.places();
     for of in steps.order() {
         body.enter(of);
         // At once: a value that waits takes a register or a place on the stack.
@@ -57,20 +57,6 @@ pub fn translate(module: &mut JITModule, steps: &Steps) -> Option<FuncId> {
     let id = module.declare_anonymous_function(&context.func.signature).ok()?;
     module.define_function(id, &mut context).ok()?;
     Some(id)
-}
-
-/// Results with the place of the first.
-type Placed = Vec<(Given, usize)>;
-
-/// Of each step the results that are its value, and the other results.
-fn places(steps: &Steps) -> (Vec<Placed>, Placed) {
-    let (mut of_steps, mut of_inputs) = (vec![Vec::new(); steps.steps.len()], Vec::new());
-    let mut place = 0;
-    for &given in &steps.results {
-        given.operand().value().map_or(&mut of_inputs, |of| &mut of_steps[of]).push((given, place));
-        place += given.count();
-    }
-    (of_steps, of_inputs)
 }
 
 fn signature(module: &JITModule, takes: &[Type], gives: &[Type]) -> Signature {
@@ -88,14 +74,6 @@ struct Functions {
     partners: HashMap<usize, usize>,
 }
 
-/// The functions that steps call, with their arguments.
-pub fn calls(steps: &Steps) -> impl Iterator<Item = (usize, expr::Function, &[Operand])> {
-    steps.steps.iter().enumerate().filter_map(|(of, step)| match step {
-        Step::Number(Operation::Call(function, arguments)) => Some((of, *function, &arguments[..])),
-        _ => None,
-    })
-}
-
 impl Functions {
     fn declared(module: &mut JITModule, context: &mut Context, steps: &Steps) -> Option<Self> {
         let address = module.target_config().pointer_type();
@@ -104,13 +82,13 @@ impl Functions {
             let known = module.declare_function(name, Linkage::Import, &signature).ok()?;
             Some(module.declare_func_in_func(known, &mut context.func))
         };
-        let partners = partners(steps);
+        let partners = steps.partners();
         let sine_and_cosine = match partners.is_empty() {
             true => None,
             false => Some(declare(SINE_AND_COSINE, &[types::F64, address], &[])?),
         };
         let mut alone = HashMap::new();
-        for (_, function, arguments) in calls(steps) {
+        for (_, function, arguments) in steps.calls() {
             if let Some(called) = called(function)
                 && !alone.contains_key(&function)
             {
@@ -119,16 +97,6 @@ impl Functions {
         }
         Some(Self { alone, sine_and_cosine, partners })
     }
-}
-
-/// Of sines and cosines of the same angles each one's other.
-fn partners(steps: &Steps) -> HashMap<usize, usize> {
-    use expr::Function::{Cos, Sin};
-    let of = |wanted: expr::Function| {
-        calls(steps).filter(move |&(_, function, _)| function == wanted).map(|(of, _, arguments)| (arguments[0], of))
-    };
-    let sines: HashMap<Operand, usize> = of(Sin).collect();
-    of(Cos).filter_map(|(angle, of)| sines.get(&angle).map(|&sine| [(of, sine), (sine, of)])).flatten().collect()
 }
 
 /// The body of a function while it is written.
@@ -230,31 +198,22 @@ impl Body<'_> {
         operation.operands().into_iter().map(|operand| self.operand(operand, kind)).collect()
     }
 
-    /// The pair that a number is of, and which of its numbers it is.
-    fn half_of(&mut self, number: Operand) -> Option<(Value, u8)> {
-        match &self.steps.steps[number.value()?] {
-            Step::Half(pair, half) => Some((self.operand(*pair, PAIR), *half)),
-            _ => None,
-        }
-    }
-
-    /// The pair of two numbers, by one instruction where one of them stands in its place of another pair already.
-    fn gathered(&mut self, [first, second]: [Operand; 2]) -> Value {
-        match [first, second].map(|number| self.half_of(number)) {
-            [Some(first), Some(second)] => self.shuffled(first, second),
-            [Some((pair, 0)), _] => {
-                let second = self.operand(second, types::F64);
-                self.builder.ins().insertlane(pair, second, 1)
+    /// The pair of two numbers.
+    fn gathered(&mut self, both: [Operand; 2]) -> Value {
+        match self.steps.gathered(both) {
+            Gathered::OfPairs(both) => {
+                let [first, second] = both.map(|(pair, half)| (self.operand(pair, PAIR), half));
+                self.shuffled(first, second)
             }
-            [_, Some((pair, 1))] => {
-                let first = self.operand(first, types::F64);
-                self.builder.ins().insertlane(pair, first, 0)
+            Gathered::Replaced { pair, half, number } => {
+                let [pair, number] = [(pair, PAIR), (number, types::F64)].map(|(of, kind)| self.operand(of, kind));
+                self.builder.ins().insertlane(pair, number, half)
             }
-            _ if first == second => {
-                let both = self.operand(first, types::F64);
-                self.builder.ins().splat(PAIR, both)
+            Gathered::Twice(number) => {
+                let number = self.operand(number, types::F64);
+                self.builder.ins().splat(PAIR, number)
             }
-            _ => {
+            Gathered::Numbers([first, second]) => {
                 let begun = if first.value().is_some() {
                     let first = self.operand(first, types::F64);
                     self.builder.ins().splat(PAIR, first)
