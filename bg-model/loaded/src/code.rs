@@ -95,8 +95,8 @@ pub enum BackEnd {
     },
 }
 
-/// Translation takes as long as so many evaluations by the interpreter: measured in `docs/benchmarks/text.md`. In a page
-/// what translates is itself compiled when it is first called, and made for size.
+/// Translation takes as long as so many evaluations by the interpreter: measured in `docs/benchmarks/text.md`. In a
+/// page what translates is itself compiled when it is first called, and made for size.
 const PAYS: u32 = if cfg!(target_arch = "wasm32") { 4000 } else { 500 };
 
 impl Default for BackEnd {

@@ -2,8 +2,8 @@
 //!
 //! In: a [`Program`] of flat single assignments. Out: a [`Function`] over slices, made by Cranelift for the machine at
 //! hand, or, where this program is WebAssembly, by the engine that runs it; none where there is no back end. Each
-//! operation is the program's, nothing is fused, reordered in a sum or left to another library: functions are those that
-//! [`bg_model::scalar::Scalar`] has for `f64`. So the values have the bits of an interpreter and of code by rustc.
+//! operation is the program's, nothing is fused, reordered in a sum or left to another library: functions are those
+//! that [`bg_model::scalar::Scalar`] has for `f64`. So the values have the bits of an interpreter and of code by rustc.
 //!
 //! | module | question it answers |
 //! |---|---|

@@ -109,8 +109,8 @@ impl<'a> Body<'a> {
         small(PARAMETERS.len() + self.locals.len() - 1)
     }
 
-    /// Puts a number or a pair onto the stack. Numbers of pairs are taken out of them when they are first asked for: not
-    /// all are.
+    /// Puts a number or a pair onto the stack. Numbers of pairs are taken out of them when they are first asked for:
+    /// not all are.
     fn push(&mut self, operand: Operand, kind: ValType) {
         let Operand::Value(of) = operand else {
             self.address(operand);
