@@ -53,10 +53,10 @@ fn hand() -> Hand {
     }
 }
 
-#[test]
-fn the_sleeve_moves_as_by_hand() {
-    let graphs = graphs(TEXT);
+fn moves_as_by_hand(text: &str, states: usize) {
+    let graphs = graphs(text);
     let governor = model(&graphs, "Governor", &[]);
+    assert_eq!(governor.description().states.len(), states);
     let start = governor.start().unwrap();
     let at_start = outputs(&*governor, 0.0, &start, &[]);
     for t_end in [0.3, 2.0] {
@@ -68,4 +68,23 @@ fn the_sleeve_moves_as_by_hand() {
         assert!((y[1] - by_hand[2]).abs() < 1e-8, "{} rad/s, hand-written {} rad/s", y[1], by_hand[2]);
         assert!((y[0] - at_start[0]).abs() > 1e-3, "it moves");
     }
+}
+
+#[test]
+fn the_sleeve_moves_as_by_hand() {
+    moves_as_by_hand(TEXT, 12);
+}
+
+/// Where the arms hang down they could swing to either side: no bounds show that they do not.
+#[test]
+fn the_sleeve_moves_as_by_hand_where_the_scene_says_what_follows() {
+    let dependent = "scene Governor { dependent { right_link, left_arm, left_link } }";
+    moves_as_by_hand(&TEXT.replace("scene Governor {}", dependent), 4);
+}
+
+/// The lengths are numbers where nothing is tuned: bounds show that one loop is closed by a root, the other one keeps
+/// its rows.
+#[test]
+fn the_sleeve_moves_as_by_hand_where_one_loop_is_proved() {
+    moves_as_by_hand(&TEXT.replace("scene Governor {}", "scene Governor { tune {} }"), 8);
 }

@@ -14,6 +14,7 @@ mod hand;
 mod immobile;
 mod library;
 mod loops;
+mod loops_in_space;
 mod orifice;
 #[path = "../problems/mod.rs"]
 mod problems;

@@ -94,7 +94,7 @@ fn links_that_lie_beside_each_other_close_a_loop() {
         observe { turned: rad = o.angle; swung: rad = c.angle; coupler.position; gap: m = norm(b.gap); stored_energy }
         scenes only; scene All { all reactions; } scene Few { expect planar; }
     }";
-    let (y, _) = end_alike(text, 7, 0.7, 1e-8);
+    let (y, _) = end_alike(text, 3, 0.7, 1e-8);
     assert!(y[0] > 2.0 && y[4] == 0.02 && y[5] < 1e-12, "{y:?}");
 }
 

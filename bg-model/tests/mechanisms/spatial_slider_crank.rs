@@ -38,6 +38,7 @@ fn hand() -> Hand {
 fn the_slider_moves_as_by_hand() {
     let graphs = graphs(TEXT);
     let ideal = model(&graphs, "SpatialSliderCrank", &[]);
+    assert_eq!(ideal.description().states.len(), 2, "the crank's angle and its speed");
     let start = ideal.start().unwrap();
     let at_start = outputs(&*ideal, 0.0, &start, &[]);
     assert!((at_start[2] - 6.0).abs() < 1e-12);

@@ -24,7 +24,7 @@ use crate::graph::Parameter;
 use crate::system::equations::{Assembly, FallibleLaw, Kind, StateEquations};
 
 /// The largest part of a link's length that the rest of a gap may be proved to have.
-const FAR: f64 = 0.999;
+pub(super) const FAR: f64 = 0.999;
 
 /// The root by which a loop is closed.
 pub(super) struct Root {

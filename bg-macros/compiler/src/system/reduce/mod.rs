@@ -163,8 +163,25 @@ pub fn for_scene(
     let counter = &mut Counter { operations, is_told: is_counted };
     counter.note("literal", &mut equations, &mut report);
     run(&PARAMETERS, &mut equations, wanted, &mut report, counter);
-    let before = may_be_jointed(&equations, wanted).then(|| (equations.clone(), report.clone()));
-    let by_tree = match in_joint_coordinates(before.clone(), wanted, tree::Which::NotFlat, counter) {
+    let may_be_jointed = wanted.speeds && tree::may_apply(&equations);
+    let before = may_be_jointed.then(|| (equations.clone(), report.clone()));
+    let closed = Form { which: tree::Which::NotFlat, loops: tree::Loops::Closed(&wanted.links) };
+    let closed = in_joint_coordinates(before.clone(), wanted, closed, counter);
+    let before = before.filter(|_| wanted.links.is_empty());
+    let closed = match closed {
+        Some(closed) if wanted.links.is_empty() => Some(closed),
+        Some(closed) if wanted.links.iter().all(|link| closed.report.closed.contains(link)) => {
+            return (Solved(closed.equations), closed.report);
+        }
+        _ => None,
+    };
+    let held = |which| Form { which, loops: tree::Loops::Held };
+    let by_tree = in_joint_coordinates(before.clone(), wanted, held(tree::Which::NotFlat), counter);
+    let by_tree = match (closed, by_tree) {
+        (Some(closed), Some(held)) => Some(closed.or_shorter(held, counter)),
+        (closed, by_tree) => closed.or(by_tree),
+    };
+    let by_tree = match by_tree {
         Some(Jointed { equations, report, is_long: true }) => return (Solved(equations), report),
         by_tree => by_tree,
     };
@@ -173,7 +190,7 @@ pub fn for_scene(
     // What lies flat is moved out of its plane as soon as a force may be across it, as far as this can prove.
     let by_tree = match by_tree {
         None if !expectation::out_of_plane(&report).is_empty() => {
-            in_joint_coordinates(before, wanted, tree::Which::All, counter)
+            in_joint_coordinates(before, wanted, held(tree::Which::All), counter)
         }
         by_tree => by_tree,
     };
@@ -192,6 +209,16 @@ struct Jointed {
     /// Whether more than a few joints move in space, as none of their coordinates is constant: the matrix of all
     /// reactions of bodies that keep their states would take seconds and more to factor.
     is_long: bool,
+}
+
+impl Jointed {
+    /// The one of two forms whose rate takes fewer operations.
+    fn or_shorter(mut self, mut other: Self, counter: &mut Counter<'_, '_>) -> Self {
+        let is_long = self.is_long || other.is_long;
+        let [own, others] = [&mut self, &mut other].map(|of| counter.cost(&mut of.equations, &of.report));
+        let shorter = if others < own { other } else { self };
+        Self { is_long, ..shorter }
+    }
 }
 
 /// So many coordinates are compared with the matrix of all reactions.
@@ -213,20 +240,21 @@ fn run(
     }
 }
 
-/// Whether the scene lets bodies have the coordinates of their joints, and there may be such.
-fn may_be_jointed(equations: &StateEquations, wanted: &Wanted) -> bool {
-    wanted.speeds && wanted.links.is_empty() && tree::may_apply(equations)
+/// Which trees have the coordinates of their joints, and what becomes of loops.
+struct Form<'a> {
+    which: tree::Which,
+    loops: tree::Loops<'a>,
 }
 
 /// These equations reduced, with bodies on trees of joints by the joints' coordinates, where there are such.
 fn in_joint_coordinates(
     of: Option<(StateEquations, Report)>,
     wanted: &Wanted,
-    which: tree::Which,
+    Form { which, loops }: Form<'_>,
     counter: &mut Counter<'_, '_>,
 ) -> Option<Jointed> {
     let (mut equations, mut report) = of?;
-    tree::put(&mut equations, &mut report, which, counter.operations)?;
+    tree::put(&mut equations, &mut report, (which, loops), counter.operations)?;
     counter.note("joints by their coordinates", &mut equations, &mut report);
     let all = tree::speeds(&equations);
     run(&STATES, &mut equations, wanted, &mut report, counter);

@@ -29,6 +29,8 @@ pub(super) enum Kind {
     Cylindrical,
     Universal,
     Spherical,
+    /// A ball by three angles.
+    Angles,
     Fixed,
     /// Of a body on no joint, which carries others.
     Floating,
@@ -42,7 +44,7 @@ const BALL: Step = Step { before: UNIT, freedom: Freedom::Ball };
 const FREE: Step = Step { before: UNIT, freedom: Freedom::Free };
 const TURN_ACROSS: Step = Step { before: ACROSS, freedom: Freedom::Turn };
 
-/// The steps that a joint has at most.
+/// The steps at most of a joint that is recognised.
 pub(super) const STEPS: usize = 2;
 
 impl Kind {
@@ -66,6 +68,7 @@ impl Kind {
             Self::Cylindrical => &[SLIDE, TURN],
             Self::Universal => &[TURN, TURN_ACROSS],
             Self::Spherical => &[BALL],
+            Self::Angles => &[TURN, TURN_ACROSS, TURN_ACROSS],
             Self::Fixed => &[],
             Self::Floating => &[FREE],
         }

@@ -128,6 +128,10 @@ fn constant_part(pool: &mut Pool, of: Id) -> Id {
 /// to each other along its axis. It is taken out of these, with the moments of such a force.
 fn effort(pool: &mut Pool, tree: &Tree<'_>, forces: &mut [[Value; 2]], of: &Link) -> Id {
     let joint = &tree.joints[of.step.0];
+    // Nothing acts about the angles of a ball.
+    if joint.kind == Kind::Angles {
+        return pool.zero();
+    }
     // The axis is written by the axes of either end; of two that cross each is on its own.
     let ends = if joint.kind == Kind::Universal { of.step.1..of.step.1 + 1 } else { 0..2 };
     let mut efforts = Vec::new();

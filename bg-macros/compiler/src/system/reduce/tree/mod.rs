@@ -7,8 +7,13 @@
 //! motions, so they occur in none of the rates. These are found from tip to ground and back (`recursion`). What else is
 //! held, by joints that close loops, stops and dry friction, keeps its reactions, which are loads to the tree.
 
+mod balls;
 mod bodies;
+mod close;
+mod closed;
+mod coordinates;
 mod guessed;
+mod independent;
 mod joints;
 mod links;
 mod loads;
@@ -16,11 +21,13 @@ mod locking;
 mod loops;
 mod motion;
 mod numbers;
+mod reach;
 mod reactions;
 mod recognition;
 mod recursion;
 mod relative;
 
+use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::report::{Fate, Report, show};
@@ -33,6 +40,8 @@ use crate::system::equations::{Kind, Origin, Reaction, State, StateEquations};
 use crate::system::inverse::InverseDynamics;
 use crate::system::link::{Freedom, Link, Moved, Moves};
 use bodies::{Body, velocity};
+use closed::{Closed, Dependent};
+use coordinates::Coordinates;
 use guessed::Guessed;
 use joints::Joint;
 use loads::{Loads, Tree};
@@ -66,28 +75,57 @@ pub(super) enum Which {
     All,
 }
 
-/// Takes the bodies of trees of joints out of the equations; none where there are none, or something does not fit.
+/// What becomes of loops.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Loops<'a> {
+    /// Joints that close them keep their rows.
+    Held,
+    /// They are closed in closed form where that is proved, or where these orientations are said to be given by them.
+    Closed(&'a [String]),
+}
+
+/// Takes the bodies of trees of joints out of the equations; none where there are none, no loop is closed that is to
+/// be, or something does not fit.
 pub(super) fn put(
     equations: &mut StateEquations,
     report: &mut Report,
-    which: Which,
+    (which, loops): (Which, Loops<'_>),
     operations: &mut Operations<'_>,
 ) -> Option<()> {
     equations.rewrite(&|pool, ids| numbers::folded(pool, ids));
     let bodies = bodies::of(equations);
+    if matches!(loops, Loops::Closed(_)) && !has_loops(equations, &bodies) {
+        return None;
+    }
     let parameters: Vec<f64> = equations.parameters.iter().map(|parameter| parameter.default).collect();
     let guessed = Guessed::of(equations, &bodies, &parameters);
     let mut literal = Literal::of(equations);
     let spins = places_of_spins(&mut equations.pool, &bodies);
     equations.rewrite(&|pool, ids| exchange(pool, ids, &spins));
     let joints = joints(equations, &bodies, (&parameters, &guessed), which)?;
+    let start = Environment { states: &guessed.start, parameters: &parameters, ..Environment::default() };
+    let joints = match loops {
+        Loops::Held => joints,
+        Loops::Closed(_) => balls::by_angles(equations, &bodies, joints, (&start, &guessed)),
+    };
     let of_bodies: BTreeSet<usize> = joints.iter().flat_map(|joint| bodies[joint.child].states()).collect();
     let given: BTreeSet<usize> = joints.iter().flat_map(|joint| joint.given(&bodies)).collect();
-    let start = Environment { states: &guessed.start, parameters: &parameters, ..Environment::default() };
     let wanted = release(equations, (&bodies, &joints), &of_bodies, &start)?;
     let first = 6 * bodies.len() + joints::PROBES;
-    let coordinates = motion::coordinates(&mut equations.pool, first, &joints);
+    let mut coordinates = motion::coordinates(&mut equations.pool, first, &joints);
+    let next = first + 2 * coordinates.iter().map(Vec::len).sum::<usize>();
+    let apart = match loops {
+        Loops::Held => None,
+        Loops::Closed(asked) => {
+            let is_any = friction::rigid(&equations.reactions) > 0 && wanted.is_empty();
+            Some((Coordinates::apart(&mut equations.pool, next, &joints, &mut coordinates).filter(|_| is_any)?, asked))
+        }
+    };
     let coordinated = Coordinated { bodies: &bodies, joints: &joints, coordinates: &coordinates };
+    let working = match loops {
+        Loops::Held => BTreeSet::new(),
+        Loops::Closed(_) => recognition::working(equations, &bodies, (&start, &guessed)),
+    };
     loops::turn(equations, &mut literal, coordinated);
     literal.keep_mobilities(equations);
     relative::recognise(equations, coordinated);
@@ -96,14 +134,35 @@ pub(super) fn put(
     let Loads { mut moved, axes, ground } = Loads::of(equations, &tree, &coordinates);
     let motion = Motion::of(&mut equations.pool, &links, &seats, &moved, axes);
     let mut images = motion.images(&mut equations.pool, &bodies, &seats, &given);
-    let apart = moved.clone();
-    let holds = locking::lock(equations, &mut moved, &images);
-    let when = when(equations, &links, (&moved, &motion.spins), &ground, operations);
-    let found = recursion::accelerations(&mut equations.pool, &links, (&moved, &motion.spins), (&ground, when));
-    let multipliers = multipliers(&equations.reactions);
-    let found = linear(&mut equations.pool, &links, found, &multipliers);
-    let released = released(equations, &tree, (&apart, &motion), (&ground, when), &holds);
     let mut starts: Vec<Vec<[Id; 2]>> = joints.iter().map(|joint| motion::starts(equations, &bodies, joint)).collect();
+    let closed = match &apart {
+        Some((coordinates, asked)) => {
+            let moving = close::Moving { tree: &tree, coordinates, working: &working, images: &images };
+            let (closed, gone) = close::loops(equations, moving, &starts.concat(), asked)?;
+            let states = joints.iter().flat_map(|joint| joint.given(&bodies)).collect();
+            forget(equations, &mut moved, &gone.into_iter().collect(), &states)?;
+            Some((closed, coordinates))
+        }
+        None => None,
+    };
+    let before = moved.clone();
+    let holds = locking::lock(equations, &mut moved, &images);
+    let (found, released) = match &closed {
+        Some((closed, coordinates)) => {
+            let of = (&moved[..], &motion.spins[..]);
+            let rates = independent::rates(&mut equations.pool, &links, of, &ground, (closed, coordinates));
+            let multipliers = multipliers(&equations.reactions);
+            let found = Accelerations { rates, links: Vec::new(), needed: Vec::new() };
+            (linear(&mut equations.pool, &links, found, &multipliers), None)
+        }
+        None => {
+            let when = when(equations, &links, (&moved, &motion.spins), &ground, operations);
+            let found = recursion::accelerations(&mut equations.pool, &links, (&moved, &motion.spins), (&ground, when));
+            let multipliers = multipliers(&equations.reactions);
+            let found = linear(&mut equations.pool, &links, found, &multipliers);
+            (found, released(equations, &tree, (&before, &motion), (&ground, when), &holds))
+        }
+    };
     for (_, of_one) in joints.iter().zip(&mut starts).filter(|(joint, _)| joint.is_sought) {
         of_one.iter_mut().for_each(|[_, speed]| *speed = guessed::sought(equations, *speed));
     }
@@ -133,13 +192,30 @@ pub(super) fn put(
         report.say(state, Fate::Equal(name));
         images.extend([(Symbol::state(state), place), (turn, equations.pool.zero())]);
     }
-    let next = first + 2 * coordinates.iter().map(Vec::len).sum::<usize>();
-    equations.inverse = inverse(equations, &tree, (&moved, &motion, &found), (&ground, next));
-    let integrated = become_states(equations, &tree, (&moved, &found.rates), &starts, report)?;
+    equations.inverse = match &closed {
+        Some(_) => None,
+        None => inverse(equations, &tree, (&moved, &motion, &found), (&ground, next)),
+    };
+    let mut integrated = become_states(equations, &tree, (&moved, &found.rates), &starts, report)?;
+    if let Some((closed, coordinates)) = &closed {
+        let read = read(equations, (&reactions, &images), &integrated);
+        drop_dependent((closed, coordinates), &read, &mut integrated, report);
+    }
     let mut places: BTreeMap<Symbol, Id> = BTreeMap::new();
     for (&coordinate, &state) in &integrated {
         kept[state] = true;
         places.insert(coordinate, equations.pool.symbol(Symbol::state(state)));
+    }
+    if let Some((closed, coordinates)) = &closed {
+        closed.put_roots(equations);
+        let links = tree.links.iter().enumerate().filter(|(link, _)| closed.gives(*link));
+        let tracks = links.map(|(_, link)| equations.states[bodies[joints[link.step.0].child].axes[0]].origin);
+        let names = tracks.filter_map(|origin| match origin {
+            Origin::Orientation(track, ..) => Some(equations.tracks[track].clone()),
+            _ => None,
+        });
+        report.closed = names.collect();
+        places = closed.settled(&mut equations.pool, coordinates, &places);
     }
     equations.projections.retain(|(state, _)| kept[*state] && !given.contains(state));
     let unlocked = released.map(|rates| rates.of_states(equations, &moved, &integrated, &holds));
@@ -149,6 +225,86 @@ pub(super) fn put(
     equations.replace(&|symbol| places.get(&symbol).copied());
     super::live::keep_states(equations, report, &kept);
     Some(())
+}
+
+/// Whether rigid joints are more than the bodies that they hold.
+fn has_loops(equations: &StateEquations, bodies: &[Body]) -> bool {
+    let StateEquations { pool, states, reactions, .. } = equations;
+    let joints = closing::of_joints(reactions, 0..friction::rigid(reactions)).len();
+    let is_held = |body: &&Body| {
+        let rates: Vec<Id> = body.states().map(|state| states[state].rate).collect();
+        pool.symbols(&rates).iter().any(|symbol| matches!(symbol, Symbol::Multiplier(_)))
+    };
+    joints > bodies.iter().filter(is_held).count()
+}
+
+/// Takes reactions of loops that are closed out of the equations; none where something else than the momenta of these
+/// bodies reads one.
+fn forget(
+    equations: &mut StateEquations,
+    moved: &mut [Moved],
+    gone: &BTreeSet<Symbol>,
+    bodies: &BTreeSet<usize>,
+) -> Option<()> {
+    let outputs: Vec<Id> = equations.outputs.iter().map(|output| output.value).collect();
+    if has_any(&equations.pool, &outputs, gone) || is_read(equations, gone, bodies) {
+        return None;
+    }
+    let StateEquations { pool, shown, reactions, .. } = equations;
+    shown.forget(pool, gone);
+    reactions.retain(|reaction| !gone.contains(&reaction.multiplier));
+    let zero = pool.zero();
+    let mut without = |ids: &[Id]| substitute(pool, ids, &|symbol| gone.contains(&symbol).then_some(zero));
+    for own in moved {
+        own.effort = without(&[own.effort])[0];
+        for part in &mut own.load {
+            *part = Value(without(&part.0));
+        }
+    }
+    Some(())
+}
+
+/// The symbols that anything reads, but the rates of places.
+fn read(
+    equations: &mut StateEquations,
+    (reactions, images): (&BTreeMap<Symbol, Id>, &BTreeMap<Symbol, Id>),
+    integrated: &BTreeMap<Symbol, usize>,
+) -> BTreeSet<Symbol> {
+    let all = RefCell::new(BTreeSet::new());
+    let mut changed = equations.clone();
+    changed.replace(&|symbol| reactions.get(&symbol).copied());
+    changed.replace(&|symbol| images.get(&symbol).copied());
+    let of_states: BTreeSet<usize> = integrated.values().copied().collect();
+    for (index, state) in changed.states.iter_mut().enumerate() {
+        let is_place = matches!(state.origin, Origin::Hinge(..)) && of_states.contains(&index);
+        if is_place {
+            state.rate = changed.pool.zero();
+        }
+    }
+    changed.rewrite(&|pool, ids| {
+        all.borrow_mut().extend(pool.symbols(ids));
+        ids.to_vec()
+    });
+    all.into_inner()
+}
+
+/// Takes what loops give out of the coordinates that are integrated: but angles that something reads, whose turns have
+/// to be counted.
+fn drop_dependent(
+    (closed, coordinates): (&Closed, &Coordinates),
+    read: &BTreeSet<Symbol>,
+    integrated: &mut BTreeMap<Symbol, usize>,
+    report: &mut Report,
+) {
+    for Dependent { link, joint, .. } in &closed.dependents {
+        let own = coordinates.of(*link);
+        let is_counted = own.angle.is_some() && read.contains(&own.place);
+        for symbol in [own.speed].into_iter().chain((!is_counted).then_some(own.place)) {
+            if let Some(state) = integrated.remove(&symbol) {
+                report.say(state, Fate::Closed(joint.clone()));
+            }
+        }
+    }
 }
 
 /// So many links are few enough to find by operations when weights are counted.

@@ -243,6 +243,21 @@ pub(super) fn starts(equations: &mut StateEquations, bodies: &[Body], joint: &Jo
         Kind::Prismatic => vec![slide(pool)],
         Kind::Cylindrical => vec![slide(pool), turn(pool, 3, 0, &axis)],
         Kind::Universal => vec![turn(pool, 5, 2, &axis), turn(pool, 6, 7, &last)],
+        Kind::Angles => {
+            let [x, y, z] = [2, 5, 8].map(|k| turned[k]);
+            let spin = first.transpose().multiply(pool, &turning).0;
+            let squares = [pool.powi(x, 2), pool.powi(y, 2)];
+            let square = pool.sum(&squares);
+            let across = pool.call(Function::Sqrt, &[square]);
+            let (back, over) = (pool.neg(x), pool.neg(turned[7]));
+            let angles = [[back, y], [z, across], [over, turned[6]]].map(|of| pool.call(Function::Atan2, &of));
+            let parts = [pool.mul(spin[0], x), pool.mul(spin[1], y), pool.mul(spin[0], y), pool.mul(spin[1], x)];
+            let (along, beside) = (pool.add(parts[0], parts[1]), pool.sub(parts[2], parts[3]));
+            let (third, second) = (pool.div(along, square), pool.div(beside, across));
+            let carried = pool.mul(z, third);
+            let speeds = [pool.sub(spin[2], carried), second, third];
+            angles.into_iter().zip(speeds).map(|(angle, speed)| [angle, speed]).collect()
+        }
         Kind::Spherical | Kind::Fixed | Kind::Floating => Vec::new(),
     }
 }

@@ -60,6 +60,11 @@ impl Wanted {
         Self(wanted)
     }
 
+    /// Whether nothing reads one.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Whether it has this one.
     pub fn has(&self, multiplier: &Symbol) -> bool {
         self.0.values().flatten().any(|row| row.multiplier == *multiplier)

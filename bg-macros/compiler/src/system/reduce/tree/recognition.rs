@@ -85,6 +85,46 @@ impl Rows {
     }
 }
 
+/// The multipliers of the rigid joints that are closed at the start and move so, and whose reactions work on nothing
+/// but the flows of their rows.
+pub(super) fn working(
+    equations: &mut StateEquations,
+    bodies: &[Body],
+    (starts, guessed): (&Environment<'_>, &Guessed),
+) -> BTreeSet<Symbol> {
+    let given = Given::new(equations, bodies, starts, guessed);
+    let mut working = BTreeSet::new();
+    for rows in closing::of_joints(&equations.reactions, 0..friction::rigid(&equations.reactions)) {
+        let Some(Rows { rows, flows, .. }) = Rows::of(equations, &given, rows) else { continue };
+        let is_closed = rows.iter().all(|&row| Choice::is_closed(equations, row)) && moves_so(equations, &rows, &given);
+        if is_closed && works_not(equations, &rows, (&flows, &given)) {
+            working.extend(rows.iter().map(|&row| equations.reactions[row].multiplier));
+        }
+    }
+    working
+}
+
+/// Where a ball of these rows is on a body, in its axes from its centre; none where they are none of a ball on it.
+pub(super) fn ball(
+    equations: &mut StateEquations,
+    bodies: &[Body],
+    rows: &[usize],
+    body: usize,
+    (starts, guessed): (&Environment<'_>, &Guessed),
+) -> Option<Value> {
+    let given = Given::new(equations, bodies, starts, guessed);
+    let Rows { flows, gaps, ends, .. } = Rows::of(equations, &given, rows.to_vec())?;
+    let other = ends.iter().copied().find(|&end| end != body);
+    let pool = &mut equations.pool;
+    let columns: Vec<Vec<Id>> = (0..3).map(|k| partial(pool, &flows, velocity(body, k))).collect();
+    let along: Vec<Vec<Id>> = (0..rows.len()).map(|row| columns.iter().map(|column| column[row]).collect()).collect();
+    let is_ball =
+        ends.contains(&body) && matches!(ends.len(), 1 | 2) && Kind::of(rows.len(), 0) == Some(Kind::Spherical);
+    let [_, at] =
+        points(pool, [other.map(|other| &bodies[other]), Some(&bodies[body])], (&gaps, &along)).filter(|_| is_ball)?;
+    Some(at)
+}
+
 /// What is known of all bodies.
 struct Given<'a> {
     /// Whose states and velocities symbols are.
@@ -159,7 +199,7 @@ fn joint(
         Kind::Revolute | Kind::Cylindrical => shared(pool, ends, &about, given)?,
         Kind::Prismatic => whole(pool, ends, &along, given)?,
         Kind::Fixed => whole(pool, ends, &[], given)?,
-        Kind::Spherical | Kind::Floating => [UNIT; 2],
+        Kind::Spherical | Kind::Angles | Kind::Floating => [UNIT; 2],
     };
     let of_translations: Vec<Id> = translations.iter().map(|&row| gaps[row]).collect();
     let at = points(pool, ends, (&of_translations, &along))?;
@@ -177,7 +217,7 @@ fn joint(
     let joint = by_its_angle(pool, bodies, joint, &given.angles);
     let is_proved = holds(equations, bodies, &joint, (&flows, &gaps))
         && starts_so(equations, bodies, &joint, given)
-        && works_not(equations, &joint, (&flows, given));
+        && works_not(equations, &joint.rows, (&flows, given));
     is_proved.then_some(joint)
 }
 
@@ -425,7 +465,7 @@ fn starts_so(equations: &mut StateEquations, bodies: &[Body], joint: &Joint, giv
     if !joint.rows.iter().all(|&row| Choice::is_closed(equations, row)) {
         return false;
     }
-    let StateEquations { pool, states, reactions, .. } = equations;
+    let StateEquations { pool, states, .. } = &mut *equations;
     let axes = [joint.parent, Some(joint.child)].map(|body| match body {
         Some(body) => Value(bodies[body].axes.iter().map(|&state| states[state].start).collect()),
         None => Value::identity(pool),
@@ -434,7 +474,7 @@ fn starts_so(equations: &mut StateEquations, bodies: &[Body], joint: &Joint, giv
     let together: &[usize] = match joint.kind {
         Kind::Revolute | Kind::Cylindrical => &[2],
         Kind::Prismatic | Kind::Fixed => &[0, 1, 2],
-        Kind::Universal | Kind::Spherical | Kind::Floating => &[],
+        Kind::Universal | Kind::Spherical | Kind::Angles | Kind::Floating => &[],
     };
     let steps = joint.steps();
     let slides = steps.iter().any(|step| step.freedom == Freedom::Slide);
@@ -464,18 +504,25 @@ fn starts_so(equations: &mut StateEquations, bodies: &[Body], joint: &Joint, giv
             return false;
         }
     }
-    let flows: Vec<Id> = joint.rows.iter().map(|&row| reactions[row].slip.flow).collect();
+    let all = numbers::folded(pool, &all);
+    all.into_iter().all(|id| vanishes(pool, id)) && moves_so(equations, &joint.rows, given)
+}
+
+/// Whether bodies start at a speed that these rows allow, or at one that is looked for.
+fn moves_so(equations: &mut StateEquations, rows: &[usize], given: &Given<'_>) -> bool {
+    let StateEquations { pool, states, reactions, .. } = equations;
+    let flows: Vec<Id> = rows.iter().map(|&row| reactions[row].slip.flow).collect();
     let flows = substitute(pool, &flows, &|symbol| given.by_momenta.get(&symbol).copied());
     let flows = substitute(pool, &flows, &|symbol| symbol.as_state().map(|state| states[state].start));
-    all.extend(flows.into_iter().filter(|&flow| !given.guessed.has(pool, flow)));
-    let all = numbers::folded(pool, &all);
-    all.into_iter().all(|id| vanishes(pool, id))
+    let flows: Vec<Id> = flows.into_iter().filter(|&flow| !given.guessed.has(pool, flow)).collect();
+    let flows = numbers::folded(pool, &flows);
+    flows.into_iter().all(|id| vanishes(pool, id))
 }
 
 /// Whether each reaction acts linearly on bodies' momenta alone and works on nothing but the flow of its row.
-fn works_not(equations: &mut StateEquations, joint: &Joint, (flows, given): (&[Id], &Given<'_>)) -> bool {
+fn works_not(equations: &mut StateEquations, rows: &[usize], (flows, given): (&[Id], &Given<'_>)) -> bool {
     let StateEquations { pool, states, reactions, .. } = equations;
-    joint.rows.iter().zip(flows).all(|(&row, &flow)| {
+    rows.iter().zip(flows).all(|(&row, &flow)| {
         let multiplier = reactions[row].multiplier;
         let mut powers = Vec::new();
         for &state in given.loaded.get(&multiplier).into_iter().flatten() {

@@ -12,6 +12,8 @@ use crate::system::jacobian::{self, Jacobian};
 use crate::system::reduce::reaction;
 use crate::system::reduce::tests::{Draw, Scene, scene};
 
+mod loops;
+
 /// A state with all outputs of `bodies` bodies and `others`.
 fn observed(bodies: usize, others: &str) -> String {
     let mut text = String::new();
@@ -404,8 +406,13 @@ fn put(statements: &str) -> Scene {
     let derived = crate::pipeline::derive(&variant.graph).expect("equations").equations;
     let (mut literal, mut reduced) = (derived.clone(), derived);
     let mut report = crate::system::reduce::Report::new(&reduced);
-    super::put(&mut reduced, &mut report, super::Which::NotFlat, &mut crate::program::rate_operations)
-        .unwrap_or_else(|| panic!("no tree: {statements}"));
+    super::put(
+        &mut reduced,
+        &mut report,
+        (super::Which::NotFlat, super::Loops::Held),
+        &mut crate::program::rate_operations,
+    )
+    .unwrap_or_else(|| panic!("no tree: {statements}"));
     for equations in [&mut literal, &mut reduced] {
         reaction::solve(equations);
         equations.close();
