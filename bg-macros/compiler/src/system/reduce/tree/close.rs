@@ -8,6 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::closed::{Closed, Closer, Closing};
 use super::coordinates::Coordinates;
+use super::joints::Kind;
 use super::loads::Tree;
 use crate::expr::{Id, Pool, Symbol, derivative, substitute};
 use crate::system::equations::{Origin, StateEquations};
@@ -44,7 +45,6 @@ pub(super) fn loops(
         return None;
     }
     let at_start = at_start(&mut equations.pool, of.coordinates, starts);
-
     let is_asked: Vec<bool> = of
         .tree
         .links
@@ -83,7 +83,10 @@ pub(super) fn loops(
     let is_free = |link: &usize| !closed.gives(*link);
     let is_sought = |link: usize| of.tree.joints[of.tree.links[link].step.0].is_sought;
     let is_found = !(0..of.tree.links.len()).filter(is_free).any(is_sought);
-    (!closed.dependents.is_empty() && is_found).then_some((closed, gone))
+    // A ball's angles are no coordinates where the first and the third turn about one line.
+    let is_of_ball = |link: &Link| link.step.1 == 0 && of.tree.joints[link.step.0].kind == Kind::Angles;
+    let turns_freely = of.tree.links.iter().enumerate().any(|(link, own)| is_of_ball(own) && !closed.gives(link));
+    (!closed.dependents.is_empty() && is_found && !turns_freely).then_some((closed, gone))
 }
 
 /// How well the coordinate of each link is one that others give: best one whose speed the start looks for or that the

@@ -55,6 +55,20 @@ fn a_rod_that_may_be_in_line_with_the_rocker_keeps_its_rows() {
     assert!(operations(&said) < operations(&plain), "{} {}", said.report, plain.report);
 }
 
+/// Three angles of a ball that no loop gives meet poses in which they are no coordinates, wherever else a loop is closed.
+#[test]
+fn a_ball_that_no_loop_gives_has_no_angles() {
+    let [short, long] = [0.1, 0.3].map(|radius| rssr(radius, "").replace(&observed(3, ""), ""));
+    let (_, long) = long.split_once("body b0").expect("gravity and ground before it");
+    let names = [("b0", "b3"), ("b1", "b4"), ("b2", "b5"), ("pin", "pin2"), ("hinge", "hinge2"), ("first", "first2")];
+    let other = names.iter().fold(format!("body b0{long}"), |text, (own, other)| text.replace(own, other));
+    let scene =
+        scene(&format!("{short} {} {}", other.replace("second", "second2"), observed(6, "")), "dependent { b1, b2 }");
+    assert!(scene.left().iter().all(|state| !state.starts_with("first2.q")), "{}", scene.report);
+    assert_eq!(closed(&scene).len(), 0, "{}", scene.report);
+    agrees(&scene);
+}
+
 /// The crank turns and the rocker does not, or not as it has to: the run time says so.
 #[test]
 fn start_velocities_that_may_not_fit_keep_the_rows() {
