@@ -1,6 +1,7 @@
 //! Loops in space in closed form, beside the literal graphs in states that no run has chosen; what is left as it was.
 
 use super::{agrees, observed, operations};
+use crate::random::Random;
 use crate::system::reduce::Fate;
 use crate::system::reduce::tests::{Scene, scene};
 
@@ -41,6 +42,45 @@ fn a_rod_on_two_balls_moves_as_its_bodies_do() {
     assert_eq!(laws, [("second", false), ("second", false)], "the rocker's angle, and the second one of the ball");
     assert_eq!(operations(&scene), 392, "{}", scene.report);
     agrees(&scene);
+}
+
+/// Mechanisms like it, with the rocker about x or y anywhere beside the crank.
+#[test]
+fn rods_on_two_balls_drawn_at_random_move_as_their_bodies_do() {
+    let mut random = Random::new(7);
+    let mut closed_ones = 0;
+    for k in 0..10 {
+        let mut between = |low: f64, high: f64| low + (high - low) * random.unit();
+        let (crank, foot) = (between(0.05, 0.25), [between(0.6, 1.4), between(-0.3, 0.3), between(-0.7, 0.7)]);
+        let (length, angle) = (between(0.4, 0.9), between(-0.8, 0.8));
+        let [axis, of, to] = if k % 2 == 0 { [0, 1, 2] } else { [1, 2, 0] };
+        let mut along = [0.0; 3];
+        along[of] = length / 2.0;
+        let mut tip = foot;
+        (tip[of], tip[to]) = (foot[of] + length * angle.cos(), foot[to] + length * angle.sin());
+        let (low, half, name) = (along.map(|part| -part), crank / 2.0, ["x", "y"][axis]);
+        let far = [tip[0] - crank, tip[1], tip[2]];
+        let scene = scene(
+            &format!(
+                "gravity [0.7, -9.81, 1.3]; ground {{ point O = [0, 0, 0]; point P = {foot:?}; }}
+                 body b0 {{ mass 1; inertia [0.01, 0.02, 0.02]; point left = [-{half}, 0, 0];
+                     point right = [{half}, 0, 0]; start left at [0, 0, 0]; }}
+                 joint pin: revolute z (ground.O -> b0.left) {{ rigid; }}
+                 body b1 {{ mass 1.5; inertia [0.03, 0.02, 0.03]; point low = {low:?}; point high = {along:?};
+                     start low at {foot:?}; start turned rotation_{name}({angle}); }}
+                 joint hinge: revolute {name} (ground.P -> b1.low) {{ rigid; }}
+                 body b2 {{ mass 0.5; inertia [0.03, 0.01, 0.035]; point near = [0, 0, 0]; point far = {far:?};
+                     start near at [{crank}, 0, 0]; }}
+                 joint first: spherical (b0.right -> b2.near) {{ rigid; }}
+                 joint second: spherical (b2.far -> b1.high) {{ rigid; }} {}",
+                observed(3, "")
+            ),
+            "",
+        );
+        closed_ones += usize::from(!closed(&scene).is_empty());
+        agrees(&scene);
+    }
+    assert!((2..10).contains(&closed_ones), "{closed_ones} are closed");
 }
 
 /// A rocker and a rod in line: no rocker follows such a crank all the way round.
