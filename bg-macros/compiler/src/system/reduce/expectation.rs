@@ -73,9 +73,8 @@ impl Explain for ExpectationFault {
             F::StateCount { .. } => "correct the number, or what the scene watches and tunes".to_owned(),
             F::UnknownBody { near: Some(near), .. } => format!("did you mean `{near}`?"),
             F::UnknownBody { .. } => "name a body of the graph".to_owned(),
-            F::Independent { .. } => "name a link that turns in the plane between two others; \
-                 where a pin closes the loop, name both links, as in `dependent coupler, rocker;`. Without it the loop \
-                 is closed by projection"
+            F::Independent { .. } => "name bodies that turn between two others in a closed loop, \
+                 all that it gives, as in `dependent coupler, rocker;`. Without it the loop is closed by projection"
                 .to_owned(),
             F::AllReactions { kept, .. } => match kept {
                 Kept::Asked => "leave out `all reactions;`".to_owned(),
