@@ -95,7 +95,8 @@ fn a_rod_that_may_be_in_line_with_the_rocker_keeps_its_rows() {
     assert!(operations(&said) < operations(&plain), "{} {}", said.report, plain.report);
 }
 
-/// Three angles of a ball that no loop gives meet poses in which they are no coordinates, wherever else a loop is closed.
+/// Three angles of a ball that no loop gives meet poses in which they are no coordinates, also where another loop is
+/// closed.
 #[test]
 fn a_ball_that_no_loop_gives_has_no_angles() {
     let [short, long] = [0.1, 0.3].map(|radius| rssr(radius, "").replace(&observed(3, ""), ""));
