@@ -203,12 +203,17 @@ impl Closer<'_> {
 
     /// The square of both vectors' length, where they are perpendicular and of one constant length.
     fn conformal(&self, pool: &mut Pool, p: &[Id], q: &[Id]) -> Option<Id> {
+        let square = self.alike(pool, p, q)?;
+        let is_constant = !pool.is_zero(square) && super::is_constant(pool, square);
+        is_constant.then_some(square)
+    }
+
+    /// The same, where the length may change.
+    fn alike(&self, pool: &mut Pool, p: &[Id], q: &[Id]) -> Option<Id> {
         let squares = [dot(pool, p, p), dot(pool, q, q)];
         let [square, other] = self.coordinates.shortened(pool, squares);
         let apart = [pool.sub(square, other), dot(pool, p, q)];
-        let is_so = apart.into_iter().all(|id| self.coordinates.vanishes(pool, id));
-        let is_constant = !pool.is_zero(square) && super::is_constant(pool, square);
-        (is_so && is_constant).then_some(square)
+        apart.into_iter().all(|id| self.coordinates.vanishes(pool, id)).then_some(square)
     }
 
     /// A gap as an equation for the coordinate of a link.
@@ -232,12 +237,7 @@ impl Closer<'_> {
         let gap = pool.linear(0.0, &[(square, 0.5), (last.square, -0.5)]);
         if let Some(angle) = own.angle {
             let ([p, q], rest) = affine(pool, e, angle)?;
-            let apart = [dot(pool, &p, &p), dot(pool, &q, &q)];
-            let [length, other] = self.coordinates.shortened(pool, apart);
-            let apart = [pool.sub(length, other), dot(pool, &p, &q)];
-            if !apart.into_iter().all(|id| self.coordinates.vanishes(pool, id)) {
-                return None;
-            }
+            let length = self.alike(pool, &p, &q)?;
             let (a, b, far) = (dot(pool, &rest, &p), dot(pool, &rest, &q), dot(pool, &rest, &rest));
             let rest = pool.linear(0.0, &[(far, 0.5), (length, 0.5), (last.square, -0.5)]);
             let [a, b, rest] = self.coordinates.shortened(pool, [a, b, rest]);
@@ -268,7 +268,8 @@ impl Closer<'_> {
     ) -> bool {
         let own = self.coordinates.of(link);
         let pool = &mut equations.pool;
-        let (slope, square, least) = match scalar {
+        // Of a turn the square of the pivot is at most a^2 + b^2, by which its cosine and sine are divided, too.
+        let (slope, square, most) = match scalar {
             Scalar::Turn { by: [a, b], rest } => {
                 let [cosine, sine] = self.coordinates.angle(pool, link);
                 let (first, second) = (pool.mul(b, cosine), pool.mul(a, sine));
@@ -293,19 +294,16 @@ impl Closer<'_> {
                 return true;
             }
         };
-        let Some(pivot) = self.root(equations, closed, joint, (link, slope), (square, least), all) else {
+        let Some(pivot) = self.root(equations, closed, joint, (link, slope), (square, most), all) else {
             return false;
         };
         let pool = &mut equations.pool;
         let images = match (scalar, own.angle) {
             (Scalar::Turn { by: [a, b], rest }, Some([cosine, sine])) => {
-                let squares = [pool.powi(a, 2), pool.powi(b, 2)];
-                let length = pool.sum(&squares);
-                let [length] = self.coordinates.shortened(pool, [length]);
                 let mut part = |x: Id, y: Id, sign: f64| {
                     let (first, second) = (pool.mul(x, pivot), pool.mul(y, rest));
                     let sum = pool.linear(0.0, &[(first, sign), (second, -1.0)]);
-                    pool.div(sum, length)
+                    pool.div(sum, most)
                 };
                 vec![(cosine, part(b, a, 1.0)), (sine, part(a, b, -1.0))]
             }
